@@ -22,7 +22,7 @@ def _real(sequence, backend):
 # Name, back end or part, and words of each run.
 RUNS = {
     **{f"{sequence}, {backend}": _real(sequence, backend) for sequence in SEQUENCES for backend in ("filter", "window")},
-    "masks": [*_real(SEQUENCES[1], "filter"), "--masks"],
+    "masks": [*_real(SEQUENCES[1], "filter"), "--masks", "partial"],
     "vio at rest": ["pf-sim", "vio", "--seeds", "1", "--seconds", "8"],
     "vio moving": ["pf-sim", "vio", "--seeds", "1", "--seconds", "8", "--start", "moving"],
     "vio phone": ["pf-sim", "vio", "--seeds", "1", "--seconds", "8", "--unit", "phone"],
@@ -140,7 +140,7 @@ def page(done, numbers, revision, date):
         here = constant.name.split(".")[0]
         if here != folder:
             folder = here
-            lines += ["", f"## {folder}", "", "| number | value | half | double |", "|---|---|---|---|"]
+            lines += ["", f"## {folder}", "", f"*Old numbers, {date}.*", "", "| number | value | half | double |", "|---|---|---|---|"]
         lines.append(f"| `{constant.name[len(here) + 1:]}` | {constant.value} | {cells[0]} | {cells[1]} |")
     judged = sum("double" in done.get(c.name, {}) for c in numbers)
     head = [

@@ -36,10 +36,6 @@ class PoseBelief {
   static Scalar updated(Scalar before, Scalar evidence);
   /// Evidence of a consensus of this frame.
   Scalar evidence(const PoseConsensus& consensus) const { return pose_evidence(consensus, share_, alike_); }
-  /// The same of a pose that is not the predicted one: how much is found from there earlier frames do not tell.
-  Scalar evidence_elsewhere(const PoseConsensus& consensus) const {
-    return pose_evidence(consensus, FindShare::of_another_view(), alike_);
-  }
   const FindShare& share() const { return share_; }
   /// Most that the log-odds of a pose elsewhere can be: however many images agree, the place may be another one that looks alike.
   Scalar most_elsewhere() const { return -alike_.log_share(); }

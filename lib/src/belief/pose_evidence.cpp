@@ -28,17 +28,7 @@ Scalar log_normal_density(Scalar nis, Scalar log_det, int n) {
   return -(nis + log_det) / 2 - static_cast<Scalar>(n) * kLogTwoPi;
 }
 
-void FindShare::init() {
-  mean_ = tuning::find_share::kPrior;
-  weight_ = tuning::find_share::kWeight;
-}
-
-FindShare FindShare::of_another_view() {
-  FindShare share;
-  share.mean_ = Scalar(0.5);
-  share.weight_ = 2;
-  return share;
-}
+void FindShare::init() { mean_ = tuning::find_share::kPrior; }
 
 void FindShare::learn(int searched, int inliers) {
   using namespace tuning::find_share;
@@ -48,32 +38,29 @@ void FindShare::learn(int searched, int inliers) {
 }
 
 Scalar FindShare::log_probability(int searched, int inliers) const {
-  const Scalar a = weight_ * mean_, b = weight_ - a;
+  const Scalar a = tuning::find_share::kWeight * mean_, b = tuning::find_share::kWeight - a;
   return log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
 }
 
 Scalar FindShare::in_frame(int searched, int inliers) const {
-  return (weight_ * mean_ + static_cast<Scalar>(inliers)) / (weight_ + static_cast<Scalar>(searched));
+  using namespace tuning::find_share;
+  return (kWeight * mean_ + static_cast<Scalar>(inliers)) / (kWeight + static_cast<Scalar>(searched));
 }
 
 Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share) {
   return share.log_probability(consensus.searched, consensus.inliers) + consensus.log_density - consensus.log_chance;
 }
 
-Scalar log_share_elsewhere(int searched, int inliers, Scalar alike) {
-  using namespace tuning::elsewhere;
-  const int others = searched - inliers;
-  const Scalar any = log_rising(1, inliers) + log_rising(1, others) - log_rising(2, searched);
-  const Scalar few = log_rising(1, inliers) + log_rising(kFew, others) - log_rising(1 + kFew, searched);
-  return any + std::log(alike + kPart * std::exp(few - any));
+Scalar log_any_share(int searched, int inliers) {
+  return log_rising(1, inliers) + log_rising(1, searched - inliers) - log_rising(2, searched);
 }
 
 Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike) {
   const Scalar against_chance = evidence_against_chance(consensus, share);
   const Scalar against_alike = share.log_probability(consensus.searched, consensus.inliers) -
-                               log_share_elsewhere(consensus.searched, consensus.inliers, std::exp(alike.log_share()));
+                               log_any_share(consensus.searched, consensus.inliers) - alike.log_share();
   const Scalar least = std::min(against_chance, against_alike);
-  return least - std::log1p(std::exp(least - std::max(against_chance, against_alike)));
+  return least - std::log(1 + std::exp(least - std::max(against_chance, against_alike)));
 }
 
 }  // namespace pf

@@ -26,23 +26,21 @@ Scalar log_chance_density(Scalar searched_px2);
 Scalar log_normal_density(Scalar nis, Scalar log_det, int n);
 
 /// Probability that a feature in view is found. It belongs to the image, not to the feature, since smear hides all alike. A frame's own
-/// share therefore counts more than that of earlier ones: the prior is Beta(w m, w (1 - m)) about their mean m, w = kWeight.
+/// share therefore counts more than that of earlier ones: the prior is Beta(kWeight m, kWeight (1 - m)) about their mean m.
 class FindShare {
  public:
   void init();
-  /// Of a view that is not the one of the frame before, in which any share may be found: Beta(1, 1).
-  static FindShare of_another_view();
   /// After a frame whose pose is used.
   void learn(int searched, int inliers);
   /// ln of the probability that just these `inliers` of `searched` features are found:
   ///
-  ///   ln B(a + k, b + n - k) - ln B(a, b),   a = w m,  b = w (1 - m)
+  ///   ln B(a + k, b + n - k) - ln B(a, b),   a = kWeight m,  b = kWeight (1 - m)
   Scalar log_probability(int searched, int inliers) const;
   /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
   Scalar in_frame(int searched, int inliers) const;
 
  private:
-  Scalar mean_ = 0, weight_ = 0;
+  Scalar mean_ = 0;
 };
 
 /// ln of the ratio of the likelihoods of this consensus: of a right pose, and of a wrong one whose finds are all chance.
@@ -52,16 +50,13 @@ class FindShare {
 /// What was found elsewhere is chance under both and cancels, as does what was missed but for P.
 Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share);
 
-/// ln of the probability that just these `inliers` of `searched` features agree with a pose in a wrong place that has something in common with
-/// the right one. A place that looks like it gives any share of them, with the probability `alike`; a part that looks like a part (a poster, a
-/// row of tags, the same wall from elsewhere) gives a few, with kPart:
-///
-///   ln(alike B(k + 1, n - k + 1) + kPart B(k + 1, n - k + kFew) / B(1, kFew))
-Scalar log_share_elsewhere(int searched, int inliers, Scalar alike);
+/// ln of the probability that just these `inliers` of `searched` features are found where any share of them may be: ln B(k + 1, n - k + 1).
+Scalar log_any_share(int searched, int inliers);
 
-/// The same ratio as evidence_against_chance(), where a wrong pose may also be in such a place, where what is found agrees as well:
+/// The same ratio, where a wrong pose may also be that of a place that looks like another one. What is found there agrees as well as in the
+/// right place; but how much of it is found may be anything, where of the right place most is:
 ///
-///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - log_share_elsewhere(n, k, s)
+///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - ln B(k + 1, n - k + 1) - ln s
 ///
 /// s: share of places that look like another one.
 Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike);

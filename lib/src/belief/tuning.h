@@ -17,14 +17,6 @@ inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pic
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
 }  // namespace pose_belief
 
-/// What a wrong place of the same scene has in common with the right one: half of the frames in random order before vamr_three_planes and
-/// visp_apriltag_board have a consensus of a few features, exponentially fewer of more (lib/docs/theory/belief.md).
-namespace elsewhere {
-inline constexpr Scalar kPart =
-    Scalar(0.5);  ///< probability that a part of such a place looks like a part of the right one
-inline constexpr Scalar kFew = Scalar(30);  ///< its share of the features is Beta(1, kFew): one in 31 in the mean
-}  // namespace elsewhere
-
 /// Share of views that look like another part of the map (alike_share.h).
 namespace alike_share {
 inline constexpr Scalar kWeight = Scalar(1);  ///< views that are not alike, which are assumed before any is known

@@ -67,9 +67,9 @@ class PlaceRecall {
     return best->inliers > 0;
   }
 
-  /// Whether an image whose pose is known looks like another part of the map, which shares little with its own view: D >= kNear, so that the
-  /// drift of a map which comes back to its beginning does not count. view: its pose, with the median depth. The others are as in find(),
-  /// and most matches are those of its own points.
+  /// Whether an image whose pose is known looks like another part of the map, which shares little with its own view (D >= kNear): the
+  /// drift of a map that comes back to its beginning does not count. view: its pose, with the median depth. The others are as in find();
+  /// most matches are those of its own points.
   template <typename Collect>
   bool is_alike(const Camera& camera, int count, const Recalled& view, Collect&& collect) {
     ExplainedPoints explained;

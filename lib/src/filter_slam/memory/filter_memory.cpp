@@ -85,7 +85,7 @@ bool FilterMemory::recall(const Tracker& tracker, PoseHypothesis* place, PoseHyp
   is_recalled_ = false;
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   const PlaceTable& table = places_.table();
-  if (table.count() == 0) return false;
+  if (!is_loaded_ || table.count() == 0) return false;
   recall_.describe_image(tracker);
   recall_.match_places(table);
   const auto collect = [&](int p, PlaceMatches* out) {

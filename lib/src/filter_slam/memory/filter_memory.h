@@ -38,7 +38,8 @@ class FilterMemory {
   bool is_loaded() const { return is_loaded_; }
   bool is_found() const { return is_found_; }
 
-  /// Lost: the place that the image may show enters the state on trial, and its rival, which has_rival says there is. False: there is none.
+  /// Lost in a loaded map: the place that the image may show enters the state on trial, and its rival, which has_rival says there is.
+  /// False: there is none.
   bool recall(const Tracker& tracker, PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival);
   /// Poses of the second best places.
   ProposedPoses& rivals() { return rivals_; }

@@ -25,24 +25,24 @@ const Mat6* KeyframeRelocaliser::found_covariance() const {
 /// One frame describes its image, and the next one compares: neither has much more to do than a keyframe.
 void KeyframeRelocaliser::note_view(Scalar median_depth) {
   if (settings_.kept.places == 0) return;
-  if (is_described_) {
-    is_described_ = false;
-    return belief_.note_view(recall_.is_alike(asked_, asked_depth_));
+  if (asked_.is_described) {
+    asked_.is_described = false;
+    return belief_.note_view(recall_.is_alike(asked_.view, asked_.depth));
   }
   const CameraView view = motion_.view();
-  if (asked_depth_ > Scalar(0) && view_distance2(view.q_WC, view.c_W, median_depth, asked_.q_WC, asked_.c_W,
-                                                 asked_depth_) < tuning::place::kNear * tuning::place::kNear)
+  if (asked_.depth > Scalar(0) && view_distance2(view.q_WC, view.c_W, median_depth, asked_.view.q_WC, asked_.view.c_W,
+                                                 asked_.depth) < tuning::place::kNear * tuning::place::kNear)
     return;
-  asked_ = view;
-  asked_depth_ = median_depth;
+  asked_.view = view;
+  asked_.depth = median_depth;
   recall_.describe_image(tracker_);
-  is_described_ = true;
+  asked_.is_described = true;
 }
 
 /// Brings the place back that the image may show, and its rival, so that they can be searched for.
 bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
   recalled_ = 0;
-  is_described_ = false;
+  asked_.is_described = false;
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   Recalled best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
@@ -61,8 +61,8 @@ KeyframeRelocaliser::Tried KeyframeRelocaliser::try_pose(const PoseHypothesis& a
   out.found = measuring_.measure_about(prior, &out.pose, &out.information, &out.consensus) >= settings_.min_inliers;
   const bool follows = before.is_set && log_so3(out.pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
                        (out.pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
-  out.log_odds = PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(),
-                                     belief_.evidence_elsewhere(out.consensus));
+  out.log_odds =
+      PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(), belief_.evidence(out.consensus));
   return out;
 }
 

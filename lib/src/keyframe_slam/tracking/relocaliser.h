@@ -29,16 +29,14 @@ class KeyframeRelocaliser {
   void init() {
     views_.init();
     recall_.init();
-    asked_ = CameraView();
-    asked_depth_ = 0;
-    is_described_ = false;
+    asked_ = Asked();
     clear_proposal();
   }
 
   /// Keeps the view of a tracked frame.
   void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
-  /// After a tracked frame. Where it sees another part of the map than the last one that was asked about, the belief learns whether it looks
-  /// like a part that is elsewhere.
+  /// After a tracked frame. Where it sees another part of the map than the last one that was asked about, the belief learns whether it
+  /// looks like a part that is elsewhere.
   void note_view(Scalar median_depth);
   /// Drops the proposals of earlier frames, since the map is tracked.
   void clear_proposal() {
@@ -70,6 +68,13 @@ class KeyframeRelocaliser {
     }
   };
 
+  /// The last view that note_view() asked about.
+  struct Asked {
+    CameraView view;
+    Scalar depth = 0;           ///< median; 0: there is none
+    bool is_described = false;  ///< its image is, and has not been compared with the map yet
+  };
+
   bool recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival);
   Tried try_pose(const PoseHypothesis& about, const PoseProposal& before, Scalar median_depth);
 
@@ -85,9 +90,7 @@ class KeyframeRelocaliser {
   PoseProposal proposal_, rival_;  ///< of earlier frames
   std::uint32_t recalled_ = 0;     ///< place that the proposal comes from; 0: none
   bool recalled_in_vain_ = false;  ///< the last frame's place was not confirmed
-  CameraView asked_;               ///< the last view that note_view() asked about, and its median depth; 0: none
-  Scalar asked_depth_ = 0;
-  bool is_described_ = false;  ///< its image is, and has not been compared with the map yet
+  Asked asked_;
 };
 
 }  // namespace pf
