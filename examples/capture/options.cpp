@@ -503,6 +503,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     wrong = std::string(options.map.empty() ? "--save-map" : "--map") +
             " needs room for places, and --max-places 0 leaves none";
   }
+  if (wrong.empty() && !options.map.empty() && options.start != "auto") {
+    wrong = "--map and --start: a run in a saved map begins lost and finds itself; leave one of them away";
+  }
   if (wrong.empty() && !timestamps.empty() && timestamps != "real" && timestamps != "nominal") {
     wrong = "--timestamps " + timestamps + ": write real or nominal";
   }

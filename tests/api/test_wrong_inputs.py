@@ -37,6 +37,9 @@ SCENE = ["--source", "sim:desk", "--frames", "5"]
 CASES = [
     ("a film", {"walk.mp4": b"\0\0\0\x20ftypisom"}, ["--source", f"images:{DIR}/walk.mp4"], ["walk.mp4", "is a film; write video:"]),
     ("an archive", {"walk.zip": b"PK\3\4"}, ["--source", f"images:{DIR}/walk.zip"], ["walk.zip", "give the folder"]),
+    ("a saved map and a start", {"room.pfmap": b"map"}, [*SCENE, "--map", f"{DIR}/room.pfmap", "--start", "target"],
+     ["--map and --start", "leave one of them away"]),
+    ("a file that is no saved map", {"room.pfmap": b"map"}, [*SCENE, "--map", f"{DIR}/room.pfmap"], ["room.pfmap", "no saved map"]),
     ("a source without its kind", GOOD, ["--source", DIR], [DIR, "images:"]),
     ("an unknown kind of source", GOOD, ["--source", f"folder:{DIR}"], ["folder:", "images:"]),
     ("a folder that is not there", GOOD, ["--source", "images:mime"], ["mime", "check the path"]),
