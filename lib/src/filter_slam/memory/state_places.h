@@ -56,7 +56,7 @@ class StatePlaces {
     int entry = 0;              ///< number n of its entry
     std::uint32_t passed = 0;   ///< a bit for each point that has come into view since
     std::uint32_t brought = 0;  ///< likewise: that has come into the state by it
-    std::uint8_t uses = 0;      ///< how often it has entered
+    int uses = 0;               ///< how often it has entered
     bool is_on_trial = false;   ///< nothing has been measured of it
   };
 
