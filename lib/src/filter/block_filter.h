@@ -246,4 +246,14 @@ Eigen::Matrix<Scalar, kRows, kRows> BlockFilter::covariance_of(const Rows& J) co
   return S;
 }
 
+/// Gives a block new rows that depend on nothing, with this covariance.
+template <int kRows>
+void augment_known(BlockFilter* blocks, int block, const Eigen::Matrix<Scalar, kRows, kRows>& covariance) {
+  Rows known;
+  known.rows = kRows;
+  Scalar raw[kRows * kRows];
+  put<kRows, kRows>(raw, kRows, 0, covariance);
+  blocks->augment(block, known, raw);
+}
+
 }  // namespace pf

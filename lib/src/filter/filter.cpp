@@ -159,11 +159,7 @@ int Filter::add_point(const Vec3& p_W, const Mat3& covariance) {
   tell_gauge();
   const int slot = take_slot(BlockKind::kPoint);
   if (slot < 0) return -1;
-  Rows known;  // depends on nothing
-  known.rows = 3;
-  Scalar raw[9];
-  put<3, 3>(raw, 3, 0, covariance);
-  blocks_.augment(slot, known, raw);
+  augment_known<3>(&blocks_, slot, covariance);
   state_.block[slot].set_xyz(p_W);
   return slot;
 }

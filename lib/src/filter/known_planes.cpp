@@ -10,11 +10,7 @@ int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Sca
   if (!apart) tell_gauge();
   const int slot = take_slot(apart ? BlockKind::kPlaneApart : BlockKind::kPlane);
   if (slot < 0) return -1;
-  Rows known;  // depends on nothing
-  known.rows = 3;
-  Scalar raw[9];
-  put<3, 3>(raw, 3, 0, covariance);
-  blocks_.augment(slot, known, raw);
+  augment_known<3>(&blocks_, slot, covariance);
   place_plane(slot, frame, roughness);
   return slot;
 }

@@ -13,11 +13,7 @@ int Filter::add_patch(int camera, const PatchMeasurement::Matrix& covariance) {
   PF_ASSERT(state_.block[camera].kind == BlockKind::kReferenceCamera);
   const int slot = take_slot(BlockKind::kPatchCorners);
   if (slot < 0) return -1;
-  Rows known;  // depends on nothing
-  known.rows = PatchMeasurement::kHeight;
-  Scalar raw[PatchMeasurement::kHeight * PatchMeasurement::kHeight];
-  put<PatchMeasurement::kHeight, PatchMeasurement::kHeight>(raw, PatchMeasurement::kHeight, 0, covariance);
-  blocks_.augment(slot, known, raw);
+  augment_known<PatchMeasurement::kHeight>(&blocks_, slot, covariance);
   state_.adopt(camera, slot);
   return slot;
 }

@@ -29,11 +29,7 @@ int Filter::add_known_camera(const Quat& q_WK, const Vec3& p_WK, const Mat6& cov
   tell_gauge();
   const int slot = take_slot(BlockKind::kReferenceCamera);
   if (slot < 0) return -1;
-  Rows known;  // depends on nothing
-  known.rows = 6;
-  Scalar raw[36];
-  put<6, 6>(raw, 6, 0, covariance);
-  blocks_.augment(slot, known, raw);
+  augment_known<6>(&blocks_, slot, covariance);
   model::ReferenceCamera::set(&state_.block[slot], q_WK, p_WK);
   return slot;
 }

@@ -75,4 +75,11 @@ Scalar view_distance2(const Quat& q_a, const Vec3& p_a, Scalar depth_a, const Qu
   return (p_a - p_b).squaredNorm() / (far * far) + 2 * (1 - z_a.dot(z_b)) / (kFarTurn * kFarTurn);
 }
 
+Mat3 PlacePoint::covariance_K() const {
+  Mat3 C;
+  for (int a = 0, n = 0; a < 3; ++a)
+    for (int b = 0; b <= a; ++b) C(a, b) = C(b, a) = static_cast<Scalar>(covariance[n++]);
+  return C;
+}
+
 }  // namespace pf

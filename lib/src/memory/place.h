@@ -34,6 +34,7 @@ struct PlacePoint {
     return Vec3(static_cast<Scalar>(ray_K[0]), static_cast<Scalar>(ray_K[1]), static_cast<Scalar>(ray_K[2]));
   }
   Vec3 position_K() const { return ray() / static_cast<Scalar>(rho); }
+  Mat3 covariance_K() const;
 };
 
 struct KeptPlace {

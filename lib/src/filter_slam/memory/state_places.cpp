@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/table_entries.h"
+#include "memory/returning_feature.h"
 #include "memory/tuning.h"
 
 namespace pf {
@@ -16,15 +17,6 @@ constexpr int kCameraRows = 6 + 3, kPointRows = 3;  // with an anchor
 
 /// 1 / w_n
 Scalar inverse_weight(int n) { return static_cast<Scalar>(n) * static_cast<Scalar>(n + 1); }
-
-Scalar number(float x) { return static_cast<Scalar>(x); }
-
-Mat3 covariance_of(const PlacePoint& point) {
-  Mat3 C;
-  for (int a = 0, n = 0; a < 3; ++a)
-    for (int b = 0; b <= a; ++b) C(a, b) = C(b, a) = number(point.covariance[n++]);
-  return C;
-}
 
 }  // namespace
 
@@ -204,22 +196,15 @@ bool StatePlaces::bring(int p, const CameraView& view, bool may_evict) {
 /// Returns its entry, or -1.
 int StatePlaces::bring_point(const KeptPlace& place, const PlacePoint& from, const Link& link) {
   const int slot = filter_.add_point_of(link.camera, link.anchor, from.position_K(),
-                                        share_ * inverse_weight(link.uses) * covariance_of(from));
+                                        share_ * inverse_weight(link.uses) * from.covariance_K());
   const int entry = slot < 0 ? -1 : map_.features.add(slot);
   if (entry < 0) {
     if (slot >= 0) filter_.remove(&slot, 1);
     return -1;
   }
   filter_.set_owner(slot, entry);
-  map_.features.come_back(entry, from.id);
-  Feature& f = map_.features[entry];
-  f.observations = f.attempts = from.observations;
-  f.last_seen_ns = frame_.report.t_ns;
-  f.has_appearance = true;
-  restore_patch(from.patch, &map_.appearance(entry).patch);
-  const Quat q_KV(number(from.q_KV[0]), number(from.q_KV[1]), number(from.q_KV[2]), number(from.q_KV[3]));
-  const Vec3 c_K(number(from.c_K[0]), number(from.c_K[1]), number(from.c_K[2]));
-  map_.first_view(entry) = {(place.q_WK * q_KV).normalized(), place.p_WK + place.q_WK * c_K};
+  bring_back_feature(place, from, entry, &map_);
+  map_.features[entry].last_seen_ns = frame_.report.t_ns;
   return entry;
 }
 

@@ -16,10 +16,11 @@ namespace {
 struct Triple {
   const int* index;  ///< of the three
   SmallCholesky<6> S;
-  Vec6 a;  ///< S_T^-1 r_T
+  Vec6 a;          ///< S_T^-1 r_T
+  Scalar nis = 0;  ///< r_T^T S_T^-1 r_T
 };
 
-/// False where the three contradict each other.
+/// False where their covariance is none.
 bool condition_on(const Filter& filter, const PixelMeasurement* matches, const int* index, Triple* out) {
   Mat6 S;
   Vec6 r;
@@ -32,7 +33,8 @@ bool condition_on(const Filter& filter, const PixelMeasurement* matches, const i
   out->index = index;
   if (!out->S.factor(S)) return false;
   out->a = out->S.solve<1>(r);
-  return r.dot(out->a) < tuning::triple_consensus::kGateOfThree;
+  out->nis = r.dot(out->a);
+  return true;
 }
 
 /// Compares a match with what the three predict. False outside of the gate.
@@ -66,6 +68,7 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
     random.draw(three);
     Triple fixed;
     if (!condition_on(filter, matches, three, &fixed)) continue;
+    if (!(fixed.nis < tuning::triple_consensus::kGateOfThree)) continue;  // the three contradict each other
     PoseConsensus consensus;
     consensus.searched = attempts;
     consensus.inliers = 3;
@@ -107,24 +110,15 @@ void weigh_jointly(const Filter& filter, const PixelMeasurement* matches, const 
     int three[3];
     random.draw(three);
     for (int& a : three) a = index[a];
-    Mat6 S;
-    Vec6 r;
-    Scalar chance = 0;
-    for (int a = 0; a < 3; ++a) {
-      const PixelMeasurement& o = matches[three[a]];
-      r.segment<2>(2 * a) = o.measured - o.predicted;
-      for (int b = 0; b < 3; ++b) S.block<2, 2>(2 * a, 2 * b) = filter.innovation_block(three[a], three[b]);
-      S.block<2, 2>(2 * a, 2 * a) += o.R_gate;
-      chance += log_chance_density(searched_px2[three[a]]);
-    }
-    SmallCholesky<6> cholesky;
-    if (!cholesky.factor(S)) continue;
-    const Scalar log_det = cholesky.log_det();
+    Triple fixed;
+    if (!condition_on(filter, matches, three, &fixed)) continue;
+    const Scalar log_det = fixed.S.log_det();
     if (has_triple && !(log_det > widest)) continue;
     has_triple = true;
     widest = log_det;
-    log_density = log_normal_density(r.dot(cholesky.solve<1>(r)), log_det, 3);
-    chance_of_three = chance;
+    log_density = log_normal_density(fixed.nis, log_det, 3);
+    chance_of_three = 0;
+    for (const int a : three) chance_of_three += log_chance_density(searched_px2[a]);
   }
   if (!has_triple) return;
   consensus->log_density = log_normal_density(fit.nis, fit.log_det, inliers) - log_density;

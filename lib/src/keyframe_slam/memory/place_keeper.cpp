@@ -5,6 +5,7 @@
 
 #include "base/table_entries.h"
 #include "keyframe_slam/map/keyframe_upkeep.h"
+#include "memory/returning_feature.h"
 #include "memory/tuning.h"
 
 namespace pf {
@@ -39,12 +40,8 @@ PlacePoint seen_from(const KeyframeMap& map, int i, const Keyframe& k) {
 /// Variance of the inverse depth of a point by the covariance of its position:  rho^4 rᵀ P r.
 Scalar inverse_depth_variance(const PlacePoint& point) {
   const Vec3 r = point.ray();
-  Scalar along = 0;
-  for (int a = 0, n = 0; a < 3; ++a)
-    for (int b = 0; b <= a; ++b)
-      along += (a == b ? Scalar(1) : Scalar(2)) * static_cast<Scalar>(point.covariance[n++]) * r(a) * r(b);
   const Scalar rho2 = static_cast<Scalar>(point.rho) * static_cast<Scalar>(point.rho);
-  return rho2 * rho2 * along;
+  return rho2 * rho2 * r.dot(point.covariance_K() * r);
 }
 
 }  // namespace
@@ -148,18 +145,10 @@ void PlaceKeeper::bring_point(const KeptPlace& place, const PlacePoint& from, in
   const int i = map_.add(keyframe, pixel);
   if (i < 0) return;
   Map& tables = map_.tables();
-  tables.features.come_back(i, from.id);
-  Feature& f = tables.features[i];
-  f.observations = f.attempts = from.observations;
-  f.has_appearance = true;
-  restore_patch(from.patch, &tables.appearance(i).patch);
-  const auto number = [](float x) { return static_cast<Scalar>(x); };
-  const Quat q_KV(number(from.q_KV[0]), number(from.q_KV[1]), number(from.q_KV[2]), number(from.q_KV[3]));
-  const Vec3 c_K(number(from.c_K[0]), number(from.c_K[1]), number(from.c_K[2]));
-  tables.first_view(i) = {(place.q_WK * q_KV).normalized(), place.p_WK + place.q_WK * c_K};
+  bring_back_feature(place, from, i, &tables);
   KeyframePoint& point = map_.point(i);
   point.ray_K = from.ray().normalized();
-  point.rho = number(from.rho);
+  point.rho = static_cast<Scalar>(from.rho);
   point.variance = inverse_depth_variance(from);
   point.remembered = {point.rho, std::sqrt(point.variance)};
   point.has_depth = true;
