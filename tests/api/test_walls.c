@@ -19,6 +19,7 @@ static int count;
 static int merges;
 static uint64_t random_state;
 static double camera_W[3]; /* where it truly is; it does not rotate */
+static int window;         /* with the window, which takes no observations */
 
 static double uniform(void) {
   random_state = random_state * 6364136223846793005u + 1442695040888963407u;
@@ -50,6 +51,10 @@ void setUp(void) {
   config.capacity.max_observations = MAX_POINTS;
   config.plane.roughness = 1e-4; /* these walls are flat */
   config.log = on_log;
+  if (window) {
+    config.backend = PF_BACKEND_WINDOW;
+    config.map.features_in_view = 100;
+  }
   random_state = 11;
   merges = 0;
   count = 0;
@@ -169,6 +174,7 @@ static void test_a_wall_before_a_start_in_its_frame_should_be_refused(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
   TEST_ASSERT_EQUAL_size_t(0, num_planes());
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
+  if (window) return;
   points_on_front(30);
   run(0, 3); /* W is the first camera now */
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
@@ -454,6 +460,24 @@ static void test_a_wall_should_add_information_about_the_gauge_in_its_own_frame_
   TEST_ASSERT_GREATER_OR_EQUAL_INT(25, the_wall(id).points);
 }
 
+static void test_walls_and_a_second_pose_should_refuse_each_other(void) {
+  const pf_wall_prior_t wall = wall_at(2, 0);
+  uint32_t id = 77;
+  pf_pose_t second;
+  memset(&second, 0, sizeof second);
+  second.q_WC[0] = 1;
+  second.p_WC[0] = 0.3;
+  for (int i = 0; i < 6; ++i) second.covariance[7 * i] = 1e-4;
+  open_slam();
+  start();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_set_second_pose(slam, 1000000000, &second));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
+  start();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_set_second_pose(slam, 1000000000, &second));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
+}
+
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_a_wall_before_a_start_in_its_frame_should_be_refused);
@@ -467,5 +491,12 @@ int main(void) {
   RUN_TEST(test_a_wall_that_is_not_there_should_be_doubted_and_a_good_one_not);
   RUN_TEST(test_a_wall_should_stay_without_points);
   RUN_TEST(test_a_wall_should_add_information_about_the_gauge_in_its_own_frame_only);
+  window = 1;
+  RUN_TEST(test_a_wall_before_a_start_in_its_frame_should_be_refused);
+  RUN_TEST(test_without_planes_a_wall_should_be_refused);
+  RUN_TEST(test_what_is_no_wall_should_be_refused_with_nothing_changed);
+  RUN_TEST(test_a_wall_should_be_as_it_was_given);
+  RUN_TEST(test_more_walls_than_planes_should_be_refused);
+  RUN_TEST(test_walls_and_a_second_pose_should_refuse_each_other);
   return UNITY_END();
 }

@@ -101,7 +101,7 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   prior.outline_P[2][1] = 1;
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_observations(slam, 1, &observation, 1));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_control(slam, none, none));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &prior, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &prior, &id)); /* before a start in its frame */
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_get_gauge_information(slam, scratch, 8, information));
   /* A picture without a corner: starting, and no crash. */
   memset(pixels, 128, sizeof(pixels));

@@ -4,6 +4,7 @@
 
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
 #include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/planes/plane_upkeep.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "support/textured_images.h"
@@ -21,6 +22,7 @@ struct KeyframeBench {
   NoiseModel noise;
   KeyframeMap map{settings, tables, frame};
   KeyframePlanes planes{settings, map};
+  PlaneUpkeep upkeep{settings, map, planes};
   KeyframeAdjustment adjustment{settings, map, planes, noise};
   TestArena arena;
   Vec3 truth_W[kPoints];
@@ -46,7 +48,6 @@ struct KeyframeBench {
     tables.init();
     frame.init();
     map.init();
-    planes.init();
     adjustment.init();
     noise.init(Scalar(0.3));
     for (int k = 0; k < kKeyframes; ++k)

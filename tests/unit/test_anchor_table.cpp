@@ -204,7 +204,7 @@ void test_scaling_should_move_those_of_the_map_alone() {
   for (const Anchor* anchor : {&held, &loose, &of_before}) table.add(table.find_free(), *anchor);
   const Scalar s = Scalar(1.7);
   const Vec3 pivot(Scalar(0.3), -1, 2);
-  table.scale(4, 5, s, pivot);
+  table.move(4, 5, Similarity::about(pivot, s));
   const auto scaled = [&](const Vec3& p_W) { return Vec3(pivot + s * (p_W - pivot)); };
   Mat6 P_scaled = P_K;
   P_scaled.bottomRows<3>() *= s;

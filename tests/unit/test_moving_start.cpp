@@ -1,5 +1,4 @@
 // Scale, gravity and the accelerometer's bias from poses up to scale and exact samples of a moving unit, and from noisy ones.
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
 
@@ -8,6 +7,8 @@
 #include "support/inertial_cases.h"
 #include "support/seeded_random.h"
 #include "unity.h"
+// After the library's own settings of Eigen.
+#include <Eigen/Eigenvalues>
 
 using namespace pf;
 

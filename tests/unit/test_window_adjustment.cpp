@@ -34,7 +34,7 @@ void find_plane(KeyframeBench* bench) {
     const Vec3 p_W = point_on_plane(bench) * static_cast<Scalar>(bench->random.uniform(0.5, 0.8));
     bench->place(bench->add(p_W, kSigma));
   }
-  bench->planes.maintain(Vec3::Zero());
+  bench->upkeep.maintain(Vec3::Zero());
   TEST_ASSERT_TRUE(bench->planes.used(0));
   TEST_ASSERT_TRUE(10 * bench->planes.points_on(0) >= 9 * kOnPlane);
 }
@@ -94,7 +94,7 @@ void test_a_point_that_its_pixels_place_elsewhere_should_not_be_held() {
   TEST_ASSERT_TRUE(std::abs(height(before)) > Scalar(0.3));
   TEST_ASSERT_TRUE(bench.adjustment.run(false));
   TEST_ASSERT_TRUE((bench.map.position(i) - before).norm() < Scalar(0.05));
-  bench.planes.maintain(Vec3::Zero());
+  bench.upkeep.maintain(Vec3::Zero());
   TEST_ASSERT_TRUE(bench.map.point(i).plane < 0);
 }
 

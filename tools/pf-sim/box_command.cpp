@@ -115,8 +115,7 @@ std::string refused_by_window(const Choices& c) {
   if (c.no_points) return "--no-points measures patches on walls, which the window has not";
   if (c.box.gross > 0) return "--gross moves patches on walls, which the window has not";
   for (const std::string& name : c.cases)
-    if (name != "points")
-      return "case " + name + " has walls of a plan, which the window does not take; points has none";
+    if (name == "ungated") return "case ungated measures patches on walls, which the window has not";
   return "";
 }
 

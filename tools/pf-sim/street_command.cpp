@@ -58,9 +58,6 @@ int fail(const std::string& what) {
 std::string refused_by_window(const Choices& c) {
   if (c.no_points) return "--no-points measures patches on walls, which the window has not";
   if (c.max_state_dim > 0) return "--max-state-dim sizes a filter; the room of the window is --max-features";
-  for (const std::string& name : c.cases)
-    if (name != "points" && name != "plain")
-      return "case " + name + " has walls of a plan, which the window does not take; points and plain have none";
   return "";
 }
 

@@ -11,11 +11,7 @@ LyingPlane lying_plane(const Filter& filter, int slot) {
   Vec3 normal_W;
   Mat3 J_n_x;
   plane_normal(frame, x, &normal_W, &out.distance, &J_n_x);
-  const Vec3 e1 = frame.R_WP.col(0);
-  out.frame.R_WP.col(0) = (e1 - normal_W * normal_W.dot(e1)).normalized();
-  out.frame.R_WP.col(1) = normal_W.cross(out.frame.R_WP.col(0));
-  out.frame.R_WP.col(2) = normal_W;
-  out.frame.o_W = frame.o_W + x(2) * frame.R_WP.col(2);
+  out.frame = lying_frame(frame, x);
   Mat3 J_out_x;  // of (alpha, beta, delta) with respect to (a, b, h)
   J_out_x.row(0) = out.frame.R_WP.col(0).transpose() * J_n_x;
   J_out_x.row(1) = out.frame.R_WP.col(1).transpose() * J_n_x;

@@ -67,6 +67,19 @@ Mat37 plane_gauge(const PlaneFrame& frame, const Vec3& x) {
   return G;
 }
 
+PlaneFrame lying_frame(const PlaneFrame& frame, const Vec3& x) {
+  PlaneFrame out;
+  Vec3 n_W;
+  Scalar d;
+  plane_normal(frame, x, &n_W, &d);
+  const Vec3 e1 = frame.R_WP.col(0);
+  out.R_WP.col(0) = (e1 - n_W * n_W.dot(e1)).normalized();
+  out.R_WP.col(1) = n_W.cross(out.R_WP.col(0));
+  out.R_WP.col(2) = n_W;
+  out.o_W = frame.o_W + x(2) * frame.R_WP.col(2);
+  return out;
+}
+
 Mat3 plane_error_jacobian() { return Vec3(-1, -1, 1).asDiagonal(); }
 
 bool reframe_plane(const PlaneFrame& from, const Vec3& x, const PlaneFrame& to, Vec3* x_new, Mat3* J_new_old) {

@@ -41,6 +41,9 @@ Scalar plane_distance(const PlaneFrame& frame, const Vec3& x, const Vec3& p_W, M
 /// δa = mᵀ A (1, 0, a),  δb = mᵀ A (0, 1, b),  δh = mᵀ (A (0, 0, h) + c).
 Mat37 plane_gauge(const PlaneFrame& frame, const Vec3& x);
 
+/// The frame in which a plane lies: the origin at (u, v) = 0, and the axes turned as little as possible.
+PlaneFrame lying_frame(const PlaneFrame& frame, const Vec3& x);
+
 /// J_x_e 3x3 of a plane that lies in its frame (a = b = h = 0):  e = (α, β, δ),  n' = n + α e1 + β e2,  n' · (p - o) = δ.
 ///
 ///   (a, b, h) = (-α, -β, δ) to first order, for the frame's own origin o

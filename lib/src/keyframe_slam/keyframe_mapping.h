@@ -3,6 +3,7 @@
 #include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
 #include "keyframe_slam/memory/map_saving.h"
+#include "keyframe_slam/planes/plane_upkeep.h"
 #include "keyframe_slam/start/keyframe_record.h"
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
@@ -21,7 +22,7 @@ class KeyframeMapping {
         map_(map),
         frame_(frame),
         motion_(motion),
-        planes_(planes),
+        planes_(settings, map, planes),
         noise_(noise),
         search_(search),
         pose_(pose),
@@ -35,6 +36,7 @@ class KeyframeMapping {
     return adjustment_.layout(arena);
   }
   void init() {
+    planes_.init();
     adjustment_.init();
     saving_.init();
   }
@@ -61,7 +63,7 @@ class KeyframeMapping {
   KeyframeMap& map_;
   Frame& frame_;
   KeyframeMotion& motion_;
-  KeyframePlanes& planes_;
+  PlaneUpkeep planes_;
   const NoiseModel& noise_;
   const PointSearch& search_;
   const PoseMeasurement& pose_;

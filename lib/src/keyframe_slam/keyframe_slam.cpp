@@ -6,7 +6,6 @@
 #include "base/elapsed.h"
 #include "frame/frame_entry.h"
 #include "frame/tuning.h"
-#include "keyframe_slam/adjustment/scale.h"
 #include "keyframe_slam/map/keyframe_upkeep.h"
 #include "keyframe_slam/start/tuning.h"
 #include "keyframe_slam/tracking/tuning.h"
@@ -31,6 +30,7 @@ bool KeyframeSlam::layout(Arena& arena) {
   pose_.layout(arena);
   mapping_.layout(arena);
   planes_.layout(arena);
+  placement_.layout(arena);
   relocaliser_.layout(arena);
   record_.layout(arena);
   return start_.layout(arena);
@@ -46,7 +46,7 @@ void KeyframeSlam::init() {
   search_.init();
   pose_.init();
   mapping_.init();
-  planes_.init();
+  placement_.init();
   relocaliser_.init();
   record_.init();
   start_.init();
@@ -65,8 +65,9 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  const bool is_gone = !start_.is_in_loaded_map() && tracking_.needs_new_map(settings_.restart_ns);
-  if (is_gone || (data_.is_map_fixed && tracking_.has_pose())) {
+  const bool may_leave = !start_.is_in_loaded_map() && !map_.tables().planes.has_known();
+  const bool is_gone = may_leave && tracking_.needs_new_map(settings_.restart_ns);
+  if (is_gone || (data_.is_map_fixed && tracking_.has_pose() && !map_.tables().planes.has_known())) {
     const std::uint32_t map_id = tracking_.map_id();
     discard_map();
     tracking_.begin_map();
@@ -77,14 +78,13 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   measure();
   data_.is_map_fixed = search_.note_fixed();
   learn();
-  if (data_.second.given && data_.second.has_come(t_ns)) scale_by_second_pose();
+  if (data_.second.given && data_.second.has_come(t_ns)) placement_.scale_by_second_pose(&data_.median_depth);
   return end_frame();
 }
 
 Status KeyframeSlam::mark_pose() {
   if (!tracking_.has_pose()) return Status::kState;
-  const Body& body = motion_.body();
-  data_.mark = {true, frame_.report.t_ns, body.q_WC, body.p_W, motion_.pose_covariance()};
+  placement_.mark_pose();
   return Status::kOk;
 }
 
@@ -123,8 +123,7 @@ void KeyframeSlam::measure() {
   if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report)) {
     const CameraView before = motion_.view();
     if (!record_.improve()) return;
-    const CameraView now = motion_.view();
-    anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
+    placement_.keep_anchors(before, motion_.view());
     mapping_.adjust();
   }
 }
@@ -140,36 +139,12 @@ void KeyframeSlam::learn() {
     data_.warnings.check(settings_, noise_, map_.camera());
   }
   const bool is_keyframe = mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
+  const int newest = map_.keyframes.newest();
+  const bool is_adjusted =
+      newest >= 0 && map_.keyframes[newest].t_ns == frame_.report.t_ns && map_.keyframes.count() > 1;
+  if (tracked && is_adjusted && !record_.progress().pending()) placement_.tend_walls(&data_.median_depth);
   // A keyframe has work enough.
   if (tracked && !is_keyframe && !record_.progress().pending()) relocaliser_.note_view(data_.median_depth);
-}
-
-/// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
-/// place is the solved record's.
-void KeyframeSlam::scale_by_second_pose() {
-  const SecondPose second = data_.second;
-  if (record_.progress().pending()) return;
-  const Vec3 first_W = start_.first_place_W();
-  const bool is_now = second.is_frame(frame_.report.t_ns) && tracking_.is_tracked(frame_.report);
-  const Vec3 at_W = is_now ? motion_.body().p_W : second.estimate_W;
-  const Scalar moved = (at_W - first_W).norm();
-  const Scalar scale = (second.p_W - first_W).norm() / moved;
-  data_.second = SecondPose();
-  record_.init();
-  if (!(is_now || second.estimated) || !(moved > tuning::second_pose::kMinSecondShift * data_.median_depth) ||
-      !std::isfinite(scale)) {
-    settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera moved too little (",
-                        fixed(moved, 4), " with a median depth of ", fixed(data_.median_depth, 2), ")");
-    return;
-  }
-  scale_window(scale, first_W, &map_, &planes_, &motion_);
-  mapping_.adjustment().scale(scale);
-  map_.tables().anchors.scale(tracking_.map_id(), tracking_.map_id(), scale, first_W);
-  relocaliser_.init();
-  data_.median_depth *= scale;
-  if (data_.mark.is_set) data_.mark = Mark();
-  settings_.hooks.say("map ", tracking_.map_id(), " is scaled by ", fixed(scale, 3),
-                      ", to the distance of the second pose");
 }
 
 /// Returns the status of the frame.
@@ -203,7 +178,7 @@ void KeyframeSlam::discard_map() {
   relocaliser_.init();
   search_.forget_view();
   mapping_.init();
-  data_.mark = Mark();
+  placement_.init();
 }
 
 }  // namespace pf

@@ -7,6 +7,7 @@
 #include "frame/fit_warnings.h"
 #include "frame/frozen_camera.h"
 #include "keyframe_slam/keyframe_mapping.h"
+#include "keyframe_slam/map_placement.h"
 #include "keyframe_slam/memory/keyframe_anchors.h"
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/start/keyframe_start.h"
@@ -35,6 +36,7 @@ class KeyframeSlam {
   /// Marks the pose of the last frame. kState: there is none.
   Status mark_pose();
 
+  MapPlacement& placement() { return placement_; }
   KeyframeStart& start() { return start_; }
 
   const Frame& frame() const { return frame_; }
@@ -42,6 +44,7 @@ class KeyframeSlam {
   const NoiseModel& noise() const { return noise_; }
   const KeyframeMap& map() const { return map_; }
   const KeyframePlanes& planes() const { return planes_; }
+  const MapPlacement& placement() const { return placement_; }
   const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
@@ -51,24 +54,13 @@ class KeyframeSlam {
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
 
-  /// The pose that the caller marked.
-  struct Mark {
-    bool is_set = false;
-    std::int64_t t_ns = 0;
-    Quat q_WC = Quat::Identity();
-    Vec3 p_W = Vec3::Zero();
-    Mat6 covariance = Mat6::Zero();
-  };
-  const Mark& mark() const { return data_.mark; }
-
  private:
   struct Data {
     std::int64_t body_ns = 0;
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
-    Mark mark;
-    bool is_map_fixed = false;  ///< the map has come from what stands still in the image
-    bool young = false;         ///< in this frame so few points have a depth that those without are used for the pose
+    bool is_map_fixed = false;       ///< the map has come from what stands still in the image
+    bool young = false;  ///< in this frame so few points have a depth that those without are used for the pose
     SecondPose second;
     FrozenCamera frozen;
     FitWarnings warnings;
@@ -78,7 +70,6 @@ class KeyframeSlam {
   Status end_frame();
   void measure();
   void learn();
-  void scale_by_second_pose();
   void discard_map();
 
   const Settings& settings_;
@@ -100,6 +91,8 @@ class KeyframeSlam {
   KeyframeStart start_{
       settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
       mapping_.saving(), record_, data_.second};
+  MapPlacement placement_{settings_, map_,     frame_,       tracking_, motion_, planes_,
+                          anchors_,  mapping_, relocaliser_, record_,   start_,  data_.second};
 };
 
 }  // namespace pf

@@ -38,23 +38,20 @@ int AnchorTable::find_free() const {
   return -1;
 }
 
-void AnchorTable::scale(std::uint32_t map_id, std::uint32_t new_map_id, Scalar s, const Vec3& pivot_W) {
-  const auto move = [&](Vec3* p_W) { *p_W = pivot_W + s * (*p_W - pivot_W); };
+void AnchorTable::move(std::uint32_t map_id, std::uint32_t new_map_id, const Similarity& T) {
+  const auto move = [&](RelativePlace* place) { *place = {(T.q * place->q).normalized(), T.of(place->p)}; };
   for (const int i : used_entries(*this)) {
     Anchor& a = anchor_[i];
     if (a.map_id != map_id) continue;
     a.map_id = new_map_id;
     if (a.place == 0 && a.camera == Anchor::kNoCamera)
-      move(&a.T_KV.p);  // K is W itself
+      move(&a.T_KV);  // K is W itself
     else
-      a.T_KV.p *= s;
-    a.T_VA.p *= s;
-    move(&a.T_WV.p);
-    move(&a.T_WA.p);
-    for (Mat6* P : {&a.between, &a.beside, &a.covariance_WV, &a.covariance}) {
-      P->bottomRows<3>() *= s;
-      P->rightCols<3>() *= s;
-    }
+      a.T_KV.p *= T.s;
+    a.T_VA.p *= T.s;
+    move(&a.T_WV);
+    move(&a.T_WA);
+    for (Mat6* P : {&a.between, &a.beside, &a.covariance_WV, &a.covariance}) *P = T.of_pose_covariance(*P);
   }
 }
 

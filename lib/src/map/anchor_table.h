@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/table_entries.h"
 #include "geometry/held_pose.h"
+#include "geometry/similarity.h"
 
 /// Table of anchors: poses that the caller set, each held by what moves when the map is corrected (lib/docs/theory/anchors.md).
 
@@ -100,8 +101,8 @@ class AnchorTable {
   }
   void remove(int i) { anchor_[i] = Anchor(); }
 
-  /// The lengths of a map become s times as large, about a place that stays, and it goes on under another id or the same one.
-  void scale(std::uint32_t map_id, std::uint32_t new_map_id, Scalar s, const Vec3& pivot_W);
+  /// A map is moved, and goes on under another id or the same one.
+  void move(std::uint32_t map_id, std::uint32_t new_map_id, const Similarity& T);
 
  private:
   Anchor* anchor_ = nullptr;

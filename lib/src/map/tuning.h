@@ -32,3 +32,31 @@ inline constexpr Scalar kSameSide = Scalar(0.9);  ///< cosine between the plane 
 
 inline constexpr int kPerOff = 3;  ///< points that are judged, of which one may be off the plane
 }  // namespace pf::tuning::plane_majority
+
+namespace pf::tuning {
+
+/// Walls whose place is judged by what is seen.
+namespace plane_doubt {
+inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
+inline constexpr int kMinRefused = 8;               ///< points, before a wall is doubted or believed again
+inline constexpr int kRefusedShare = 4;             ///< refused points for each on the wall, above which it is doubted
+inline constexpr int kCells = 5;                    ///< along each side of the image
+inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance that a doubted wall's prior gets
+}  // namespace plane_doubt
+
+/// Points before a wall that is hardly known.
+namespace plane_walls {
+inline constexpr int kTrials = 60;                    ///< triples of points
+inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
+inline constexpr int kMinOnWall = 2;                  ///< one in so many points before a wall lies on it
+}  // namespace plane_walls
+
+/// A map whose unit of length the walls give.
+namespace start_before_walls {
+inline constexpr Scalar kOneWall = Scalar(1.12);  ///< ratio of distances of points that lie on walls of the plan
+inline constexpr int kMinOnWall = 8;              ///< points that give the unit of length
+inline constexpr int kClearMajority = 2;          ///< of these to the points that give another one
+inline constexpr int kMaxRatios = 256;            ///< that are compared
+}  // namespace start_before_walls
+
+}  // namespace pf::tuning

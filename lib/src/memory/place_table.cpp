@@ -38,14 +38,14 @@ int PlaceTable::keep(const KeptPlace& place) {
   return at;
 }
 
-void PlaceTable::scale(Scalar s, const Vec3& c_W) {
-  const float f = static_cast<float>(s);
+void PlaceTable::move(const Similarity& T) {
+  const float f = static_cast<float>(T.s);
   for (const int i : used_entries(*this)) {
     KeptPlace& place = place_[i];
-    place.p_WK = c_W + s * (place.p_WK - c_W);
-    place.covariance.bottomRows<3>() *= s;
-    place.covariance.rightCols<3>() *= s;
-    place.depth *= s;
+    place.q_WK = (T.q * place.q_WK).normalized();
+    place.p_WK = T.of(place.p_WK);
+    place.covariance = T.of_pose_covariance(place.covariance);
+    place.depth *= T.s;
     for (int k = 0; k < place.count; ++k) {
       PlacePoint& point = place.point[k];
       point.rho /= f;

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/elapsed.h"
 #include "base/table_entries.h"
+#include "geometry/similarity.h"
 #include "memory/place.h"
 
 /// Table of places: as many as the config says, the least redundant ones.
@@ -37,8 +38,8 @@ class PlaceTable {
   /// Keeps a place in a free entry, or in that of the one that is then most redundant: of the two of all that are nearest to each other,
   /// the one with fewer points, the older one among equals. Where that is the new one it is not kept. Returns its entry, or -1.
   int keep(const KeptPlace& place);
-  /// Multiplies lengths by s about a place that stays.
-  void scale(Scalar s, const Vec3& c_W);
+  /// All of W is moved.
+  void move(const Similarity& T);
 
   /// A place comes back to the window as a keyframe.
   void note_return(int i) {

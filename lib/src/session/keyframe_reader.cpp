@@ -20,7 +20,7 @@ void KeyframeReader::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) co
 
 ///   q_KC = q_Kᵀ q_C,   p_KC = R_Kᵀ (p_C - p_K);   both poses are taken as independent, which overstates the covariance
 bool KeyframeReader::motion_since_mark(MotionView* out) const {
-  const KeyframeSlam::Mark& mark = slam_.mark();
+  const MarkedPose& mark = slam_.placement().mark();
   if (!mark.is_set) return false;
   Body body;
   Mat6 now;
@@ -109,13 +109,16 @@ PlaneView KeyframeReader::plane(int i) const {
   out.id = map_.planes[i].id;
   out.points = slam_.planes().points_on(i);
   out.fixed_points = out.trial = 0;  // every point on it has a depth of its own
-  out.known = out.doubted = false;
+  const bool is_wall = map_.planes[i].known;
+  out.known = is_wall;
+  out.doubted = map_.planes[i].doubted;
   out.R_WP = plane.frame.R_WP;
   out.p_WP = plane.frame.o_W;
   out.normal_W = plane.frame.R_WP.col(2);
   out.distance = out.normal_W.dot(out.p_WP);
   const Mat3 J = plane_error_jacobian();
-  out.covariance = J.lazyProduct(plane.covariance).lazyProduct(J.transpose());
+  const Mat3 covariance = is_wall ? slam_.placement().walls().covariance(i) : plane.covariance;
+  out.covariance = J.lazyProduct(covariance).lazyProduct(J.transpose());
   out.outline = map_.planes[i].seen;
   return out;
 }
@@ -130,6 +133,7 @@ bool KeyframeReader::hit(const Vec2& pixel, HitView* hit) const {
   const Vec3 direction = body.q_WC * ray_C;
   *hit = HitView();
   for (const int k : used_entries(map_.planes)) {
+    if (!map_.planes[k].counts()) continue;
     const KeyframePlane& plane = slam_.planes().plane(k);
     Vec3 at;
     Mat3 J_origin, J_direction, J_plane;

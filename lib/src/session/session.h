@@ -33,9 +33,8 @@ class Session {
   // --- how to start; before the first frame
   Status start_from_target(const Target& target);
   Status start_from_pose(const KnownBody& known);
-  /// kState: there are no walls with the window.
   Status add_wall(const PlanePrior& prior, std::uint32_t* id) {
-    return has_filter() ? filter_->add_wall(prior, id) : Status::kState;
+    return has_filter() ? filter_->add_wall(prior, id) : window_->placement().add_wall(prior, id);
   }
   /// kState: with the filter, or the scale is known already.
   Status set_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {

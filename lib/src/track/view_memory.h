@@ -2,6 +2,7 @@
 
 #include "base/arena.h"
 #include "geometry/camera.h"
+#include "geometry/similarity.h"
 #include "track/thumbnail.h"
 
 /// Thumbnails of tracked frames with their poses, by which a place is recognised roughly (Klein and Murray 2008).
@@ -25,6 +26,13 @@ class ViewMemory {
   }
   void init() { count_ = next_ = 0; }
   int count() const { return count_; }
+  /// All of W is moved.
+  void move(const Similarity& T) {
+    for (int i = 0; i < count_; ++i) {
+      view_[i].q_WC = (T.q * view_[i].q_WC).normalized();
+      view_[i].p_W = T.of(view_[i].p_W);
+    }
+  }
 
   /// Keeps the thumbnail of an image with its pose if no kept one is like it. A full memory replaces its oldest.
   void keep_if_new(const Pyramid& image, const Quat& q_WC, const Vec3& p_W);

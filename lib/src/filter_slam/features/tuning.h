@@ -16,11 +16,8 @@ inline constexpr Scalar kCorner = Scalar(0.4);      ///< tangent of the angles a
 
 /// Planes known beforehand.
 namespace plane_walls {
-inline constexpr Scalar kKnownScale = Scalar(0.05);   ///< sigma of the log scale, below which any wall may take points
-inline constexpr Scalar kOffWall = Scalar(0.5);       ///< sigma of a new point relative to the depth of its wall
-inline constexpr int kTrials = 60;                    ///< triples of points
-inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
-inline constexpr int kMinOnWall = 2;                  ///< one in so many points before a wall lies on it
+inline constexpr Scalar kKnownScale = Scalar(0.05);  ///< sigma of the log scale, below which any wall may take points
+inline constexpr Scalar kOffWall = Scalar(0.5);      ///< sigma of a new point relative to the depth of its wall
 }  // namespace plane_walls
 
 }  // namespace pf::tuning

@@ -2,10 +2,22 @@
 
 #include "filter/filter.h"
 #include "map/map.h"
+#include "map/wall_rays.h"
 
 /// Where rays meet the walls of a plan: planes of the map that were known beforehand.
 
 namespace pf {
+
+/// Where the filter has the planes of the table.
+struct FilterPlanes {
+  const Filter& filter;
+  const Map& map;
+
+  PlaneAt operator()(int plane_entry) const {
+    const Block& block = filter.state().block[map.planes[plane_entry].slot];
+    return {filter.state().frame_of(block), block.xyz()};
+  }
+};
 
 /// Whether a ray from origin_W meets this plane of the table inside its outline, on a side that can be seen. *range is from the origin,
 /// in lengths of the direction.

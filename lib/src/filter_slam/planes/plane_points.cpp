@@ -47,10 +47,7 @@ FoldRule fold_rule(const Settings& settings, const PlaneEntry& plane) {
 
 bool is_before_wall(const Filter& filter, const Map& map, int plane_entry, const Vec3& p_W) {
   const Vec3 c_W = camera_at(filter.state(), Scalar(0)).p_W;
-  Scalar range = 0, nearest = 0;
-  if (!meets_wall(filter, map, plane_entry, c_W, p_W - c_W, &range)) return false;
-  const int first = first_wall(filter, map, c_W, p_W - c_W, &nearest);
-  return first < 0 || first == plane_entry || range <= nearest;
+  return sees_through_outline(map.planes, FilterPlanes{filter, map}, plane_entry, c_W, p_W);
 }
 
 bool is_in_reach(const Settings& settings, const Filter& filter, const Map& map, int plane_entry, const Vec3& p_W) {

@@ -7,15 +7,6 @@
 
 namespace pf::tuning {
 
-/// Walls that are doubted.
-namespace plane_doubt {
-inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
-inline constexpr int kMinRefused = 8;               ///< points, before a wall is doubted or believed again
-inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance that a doubted wall's prior gets
-inline constexpr int kRefusedShare = 4;             ///< refused points for each on the wall, above which it is doubted
-inline constexpr int kCells = 5;                    ///< along each side of the image
-}  // namespace plane_doubt
-
 /// Planes that somebody says are vertical.
 namespace plane_vertical {
 inline constexpr Scalar kVerticalGate = Scalar(15.1);  ///< chi-square of one degree of freedom, 0.9999

@@ -158,7 +158,7 @@ Scalar FilterStart::look_for_walls() {
   data_.knows_scale = true;
   const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
-  map_.anchors.scale(before, tracking_.map_id(), scale, first_W);
+  map_.anchors.move(before, tracking_.map_id(), Similarity::about(first_W, scale));
   settings_.hooks.say("walls of the plan come into view: map ", before, " is scaled by ", fixed(scale, 3),
                       " and goes on as map ", tracking_.map_id(), " in metres");
   return scale;

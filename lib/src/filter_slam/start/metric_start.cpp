@@ -30,7 +30,7 @@ void MetricStart::use_motion(const MovingSolution& solution) {
   scale_tables(solution.scale, Vec3::Zero(), &map_);
   const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
-  map_.anchors.scale(before, tracking_.map_id(), solution.scale, Vec3::Zero());
+  map_.anchors.move(before, tracking_.map_id(), Similarity::about(Vec3::Zero(), solution.scale));
   settings_.hooks.say("map ", before, " is in metres, from ", fixed(solution.span, 1), " s of motion: scaled by ",
                       fixed(solution.scale, 3), " (sigma ", fixed(100 * solution.sigma_scale(), 1),
                       " %), gravity within ", degrees(solution.sigma_gravity()), " deg; it goes on as map ",

@@ -4,6 +4,7 @@
 #include "filter_slam/start/tuning.h"
 #include "frame/start/tuning.h"
 #include "geometry/common_ratio.h"
+#include "map/tuning.h"
 
 namespace pf {
 

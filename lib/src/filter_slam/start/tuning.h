@@ -9,12 +9,8 @@ namespace pf::tuning {
 
 /// First depths against those of a record, where walls are known.
 namespace start_before_walls {
-inline constexpr Scalar kOneWall = Scalar(1.12);  ///< ratio of distances of points that lie on walls of the plan
-inline constexpr int kMinOnWall = 8;              ///< points that give the record's unit of length
-inline constexpr int kClearMajority = 2;          ///< of these to the points that give another one
-inline constexpr int kCells = 9;                  ///< of the first image, a side, whose middles are looked at for walls
-inline constexpr int kMaxRatios = 256;            ///< that are compared
-inline constexpr Scalar kOpenScale = 1;           ///< sigma of the log scale until a wall is seen
+inline constexpr int kCells = 9;         ///< of the first image, a side, whose middles are looked at for walls
+inline constexpr Scalar kOpenScale = 1;  ///< sigma of the log scale until a wall is seen
 inline constexpr Scalar kSameMotion = Scalar(0.5);  ///< of two motions: their difference relative to the record's
 }  // namespace start_before_walls
 

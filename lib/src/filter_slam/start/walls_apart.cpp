@@ -3,7 +3,7 @@
 #include "base/table_entries.h"
 #include "filter_slam/features/wall_rays.h"
 #include "filter_slam/start/tuning.h"
-#include "geometry/common_ratio.h"
+#include "map/tuning.h"
 #include "model/camera_at.h"
 
 namespace pf {
@@ -26,7 +26,6 @@ void set_walls_apart(PlaneTable* planes) {
   for (const int k : used_entries(*planes)) (*planes)[k].apart = (*planes)[k].known;
 }
 
-///   u = n . (o - c0) / n . (f - c0)      a wall through o, a point at f: c0 + u (f - c0) lies on it
 Scalar find_scale_by_walls(const Filter& filter, const Map& map, std::int64_t t_ns, const Vec3& c0_W) {
   const State& state = filter.state();
   const Vec3 c_W = camera_at(state, Scalar(0)).p_W;
@@ -35,22 +34,15 @@ Scalar find_scale_by_walls(const Filter& filter, const Map& map, std::int64_t t_
   for (const int k : used_entries(map.planes)) {
     if (!map.planes[k].apart) continue;
     const PlaneFrame& frame = state.frame_of(state.block[map.planes[k].slot]);
-    const Vec3 n_W = frame.R_WP.col(2);
     for (int i = 0; i < map.features.capacity() && count < kMaxRatios; ++i) {
       const Feature& f = map.features[i];
       if (!map.features.used(i) || f.last_seen_ns != t_ns) continue;
       if (state.has_inverse_depth(f.slot)) continue;
-      const Vec3 to_W = filter.point(f.slot) - c0_W;
-      const Scalar u = n_W.dot(frame.o_W - c0_W) / n_W.dot(to_W);
-      if (!(u > Scalar(0)) || !outline_contains(map.planes[k].plan, plane_coordinates(frame, Vec3(c0_W + u * to_W))))
-        continue;
-      const Scalar before = n_W.dot(Vec3(c0_W + u * (c_W - c0_W)) - frame.o_W);
-      if (before > Scalar(0) || map.planes[k].two_sided) ratio[count++] = u;
+      const Scalar u = factor_onto_wall(map.planes[k], frame, c0_W, c_W, filter.point(f.slot));
+      if (u > Scalar(0)) ratio[count++] = u;
     }
   }
-  const CommonRatio common = find_common_ratio(ratio, count, kOneWall);
-  const bool clear = common.votes >= kMinOnWall && common.votes >= kClearMajority * common.others;
-  return clear ? common.ratio : Scalar(0);
+  return clear_factor(ratio, count);
 }
 
 void scale_tables(Scalar scale, const Vec3& pivot_W, Map* map) {

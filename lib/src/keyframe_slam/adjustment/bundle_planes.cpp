@@ -42,7 +42,7 @@ void add_planes(const KeyframeMap& map, const KeyframePlanes& planes, const Fold
   std::fill(plane_of, plane_of + points->count, -1);
   for (const int k : used_entries(planes)) {
     BundlePlane& plane = adjusted->plane[adjusted->count];
-    plane = {planes.plane(k).frame, Vec3::Zero(), fold.roughness, true};
+    plane = {planes.plane(k).frame, Vec3::Zero(), planes.roughness_of(k), true};
     int members = 0;
     for (int p = 0; p < points->count; ++p) {
       const int row = points->row[p];

@@ -91,6 +91,7 @@ void KeyframeAdjustment::adjust(bool with_lens, const RhoPrior& prior, const Bun
   adjuster_.adjust(map_.camera(), options, bundle);
   Mat6 P;
   const bool determined = adjuster_.last_pose_covariance(map_.camera(), options, bundle, &P);
+  shape_.is_determined = false;
   if (determined) note_covariance(inflation * (P + P.transpose()) / 2);
   if (with_lens) map_.move_lens(camera);
   if (with_lens && determined) {
@@ -100,6 +101,7 @@ void KeyframeAdjustment::adjust(bool with_lens, const RhoPrior& prior, const Bun
   }
   take_keyframes();
   take_points();
+  planes_.begin_adjustment();
   for (int j = 0; j < planes.count && determined; ++j)
     planes_.take_adjusted(planes.row[j], planes.plane[j].x, adjuster_.plane_covariance(j));
 }
@@ -112,6 +114,7 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
   const AdjustedPoses& poses = bundle_.poses;
   const int newest = poses.free - 1;
   map_covariance_ = given_held;
+  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, poses.pose[poses.seen_in - 1].p_W};
   int held = -1;
   for (int c = poses.free; c < poses.seen_in && choice_.is_away(); ++c) {
     const int k = poses.keyframe[c];
@@ -121,8 +124,22 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
     Mat6 A = Mat6::Identity();
     A.bottomLeftCorner<3, 3>() = -hat(Vec3(poses.pose[newest].p_W - map_.keyframes[held].p_W));
     map_covariance_ += A * map_.keyframes[held].covariance * A.transpose();
+    shape_.held_W = map_.keyframes[held].p_W;
   }
   map_.keyframes[poses.keyframe[newest]].covariance = map_covariance_;
+}
+
+void KeyframeAdjustment::set_place_covariance(const Mat6& of_held) {
+  map_covariance_ = shape_.given_held + of_held;
+  map_.keyframes[map_.keyframes.newest()].covariance = map_covariance_;
+}
+
+Scalar KeyframeAdjustment::log_rho_variance(int row) const {
+  const AdjustedPoints& points = bundle_.points;
+  const std::int16_t* end = points.row + points.count;
+  const int p = static_cast<int>(std::find(points.row, points.row + points.count, row) - points.row);
+  if (!shape_.is_determined || points.row + p == end) return 0;
+  return noise_.correlation_frames() * adjuster_.rho_variance(p) / (points.rho[p] * points.rho[p]);
 }
 
 void KeyframeAdjustment::take_keyframes() {

@@ -12,6 +12,15 @@
 
 namespace pf {
 
+/// What an adjustment took part in.
+struct AdjustmentShape {
+  int keyframes = 1;               ///< whose pixels count
+  bool is_determined = false;      ///< there are covariances
+  bool is_away = false;            ///< the map's first keyframe is not connected with the newest one
+  Mat6 given_held = Mat6::Zero();  ///< covariance of the newest keyframe's (theta, p), given those that were held fixed
+  Vec3 held_W = Vec3::Zero();      ///< place of the newest of these
+};
+
 class KeyframeAdjustment {
  public:
   KeyframeAdjustment(const Settings& settings, KeyframeMap& map, KeyframePlanes& planes, const NoiseModel& noise)
@@ -20,6 +29,7 @@ class KeyframeAdjustment {
   bool layout(Arena& arena);
   void init() {
     map_covariance_.setZero();
+    shape_ = AdjustmentShape();
     target_.init();
   }
 
@@ -28,13 +38,16 @@ class KeyframeAdjustment {
   bool run(bool settled);
   /// Of the newest keyframe's (theta, p) in W, and with it of the map about it, given the map's first keyframe.
   const Mat6& map_covariance() const { return map_covariance_; }
+  const AdjustmentShape& shape() const { return shape_; }
+  /// Variance of ln rho of a point, by the last adjustment and given the keyframes that it held: others are not taken as exact. Zero where
+  /// the point had no part in it, or nothing was determined.
+  Scalar log_rho_variance(int row) const;
+  /// What the newest keyframe may be off in W in addition to what it may be off against those that were held.
+  void set_place_covariance(const Mat6& of_held);
   /// The camera has been found at a place of this covariance: what it sees is known no better, until the next adjustment.
   void begin_at(const Mat6& place) { map_covariance_ = place; }
-  /// The map's lengths were multiplied by s.
-  void scale(Scalar s) {
-    map_covariance_.bottomRows<3>() *= s;
-    map_covariance_.rightCols<3>() *= s;
-  }
+  /// All of W is moved.
+  void move(const Similarity& T) { map_covariance_ = T.of_pose_covariance(map_covariance_); }
   HeldTarget& target() { return target_; }
 
  private:
@@ -54,6 +67,7 @@ class KeyframeAdjustment {
   HeldTarget target_;
   KeyframeBundle bundle_;
   Mat6 map_covariance_ = Mat6::Zero();
+  AdjustmentShape shape_;
 };
 
 }  // namespace pf

@@ -30,7 +30,7 @@ void KeyframeMap::init() {
 void KeyframeMap::clear() {
   frame_.forget_all();
   map_.features.clear();
-  map_.planes.clear();
+  map_.planes.keep_known();
   init();
 }
 

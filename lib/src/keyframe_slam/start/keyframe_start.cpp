@@ -28,21 +28,27 @@ int add_placed(const Vec3& p_W, int host, KeyframeMap* map) {
 
 void KeyframeStart::init() {
   known_ = KnownBody();
+  has_place_ = false;
   target_.init();
 }
 
 void KeyframeStart::start_over() {
   map_.clear();
+  map_.tables().planes.clear();  // W is another one
   record_.init();
   known_ = KnownBody();
+  has_place_ = false;
   second_ = SecondPose();
   if (map_.tables().target_withdrawn) target_.init();
 }
 
 Status KeyframeStart::use_target(const Target& target) {
   if (second_.given || is_in_loaded_map()) return Status::kState;
+  const bool has_place = target.kind == TargetKind::kPoints || target.has_place;
+  if (!has_place && map_.tables().planes.has_known()) return Status::kState;  // they would be in another W
   if (known_.given && target.kind == TargetKind::kRectangle) return Status::kState;
   target_.set_target(target);
+  has_place_ = has_place || known_.given;
   return Status::kOk;
 }
 
@@ -50,13 +56,16 @@ Status KeyframeStart::use_pose(const KnownBody& known) {
   if (target_.target().kind == TargetKind::kRectangle || is_in_loaded_map()) return Status::kState;
   known_ = known;
   known_.given = true;
+  has_place_ = true;
   return Status::kOk;
 }
 
 Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
   if (!is_next_frame(frame_, t_ns)) return Status::kTime;
   if (!((p_W - first_place_W()).norm() > sigma)) return Status::kRange;
-  if (target_.target().kind != TargetKind::kNone || second_.given || is_in_loaded_map()) return Status::kState;
+  if (target_.target().kind != TargetKind::kNone || second_.given || is_in_loaded_map() ||
+      map_.tables().planes.has_known())
+    return Status::kState;
   second_ = SecondPose();
   second_.given = true;
   second_.t_ns = t_ns;
@@ -67,7 +76,8 @@ Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar
 /// The pose is that of any place, with a covariance that leaves it open.
 Status KeyframeStart::use_map(const SavedMap& saved) {
   using namespace tuning::body_motion;
-  const bool is_chosen = known_.given || second_.given || target_.target().kind != TargetKind::kNone;
+  const bool is_chosen =
+      known_.given || second_.given || target_.target().kind != TargetKind::kNone || map_.tables().planes.has_known();
   if (is_chosen || is_in_loaded_map()) return Status::kState;
   const Status status = saving_.load(saved, tracking_.map_id());
   if (status != Status::kOk) return status;
@@ -82,6 +92,15 @@ Status KeyframeStart::use_map(const SavedMap& saved) {
   return Status::kOk;
 }
 
+Mat6 KeyframeStart::first_covariance() const {
+  if (!known_.given) return target_.target().first_covariance;
+  const int dim = settings_.body.known_rows();
+  Mat6 P;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) P(i, j) = known_.covariance[i * dim + j];
+  return P;
+}
+
 /// The pose before the first measurement: the one that the caller gave, that of the target, or the one that defines the world.
 void KeyframeStart::set_pose(bool at_target) {
   const int dim = settings_.body.known_rows();
@@ -90,8 +109,7 @@ void KeyframeStart::set_pose(bool at_target) {
   Scalar speed = kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth), rate = kStartRate;
   if (known_.given) {
     body = known_.body;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) P(i, j) = known_.covariance[i * dim + j];
+    P = first_covariance();
     const auto sigma = [&](int first) {
       Scalar trace = 0;
       for (int i = first; i < first + 3; ++i) trace += known_.covariance[i * dim + i];

@@ -40,6 +40,12 @@ class KeyframeStart {
   /// Sets the second pose, of the frame that comes at t_ns. kTime: that frame is past. kState: the scale is known. kRange: it is too near
   /// to the first place.
   Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
+  /// W is the one that the caller knows: the start is at a pose, or at a target with a place.
+  bool has_place() const { return has_place_; }
+  /// It has a target, which gives the unit of length.
+  bool is_at_target() const { return target_.has_target(); }
+  /// Covariance of (theta, p) of the first pose in W.
+  Mat6 first_covariance() const;
   /// First place of the camera: the caller's, or the one that defines W.
   Vec3 first_place_W() const { return known_.given ? known_.body.p_W : Vec3::Zero(); }
 
@@ -62,6 +68,7 @@ class KeyframeStart {
   SecondPose& second_;
   KnownBody known_;
   StartAtTarget target_;
+  bool has_place_ = false;
 };
 
 }  // namespace pf

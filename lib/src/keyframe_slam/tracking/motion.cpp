@@ -137,13 +137,15 @@ void KeyframeMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* 
   *covariance = data.P.topLeftCorner<6, 6>();
 }
 
-void KeyframeMotion::scale(Scalar s, const Vec3& c_W) {
-  data_.body.p_W = c_W + s * (data_.body.p_W - c_W);
-  data_.body.v_W *= s;
-  for (int part : {3, 6}) {  // p and v
-    data_.P.middleRows<3>(part) *= s;
-    data_.P.middleCols<3>(part) *= s;
-  }
+void KeyframeMotion::move(const Similarity& T) {
+  data_.body.q_WC = (T.q * data_.body.q_WC).normalized();
+  data_.body.p_W = T.of(data_.body.p_W);
+  data_.body.v_W = T.s * (T.q * data_.body.v_W);
+  const Mat3 R = T.q.toRotationMatrix();
+  Covariance J = Covariance::Identity();  // the velocity of rotation is in camera axes
+  J.topLeftCorner<3, 3>() = R;
+  J.block<3, 3>(3, 3) = J.block<3, 3>(6, 6) = T.s * R;
+  data_.P = Covariance(J.lazyProduct(data_.P)).lazyProduct(J.transpose());
 }
 
 }  // namespace pf

@@ -4,6 +4,7 @@
 
 #include "filter/motion.h"
 #include "frame/settings.h"
+#include "geometry/similarity.h"
 #include "vision/appearance.h"
 
 /// The body of the window: pose and velocities with their covariance, predicted by the motion model and corrected by measured poses.
@@ -46,8 +47,8 @@ class KeyframeMotion {
     data_.body.v_W = v_W;
     data_.body.w_C = w_C;
   }
-  /// Multiplies lengths by s about a place that stays.
-  void scale(Scalar s, const Vec3& c_W);
+  /// All of W is moved.
+  void move(const Similarity& T);
   /// Sets the pose's covariance alone, and drops its correlation with the velocities.
   void set_pose_covariance(const Mat6& pose);
 

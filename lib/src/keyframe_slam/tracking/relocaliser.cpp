@@ -101,4 +101,11 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   proposal_ = rival_ = PoseProposal();
 }
 
+void KeyframeRelocaliser::move(const Similarity& T) {
+  views_.move(T);
+  asked_.view = {(T.q * asked_.view.q_WC).normalized(), T.of(asked_.view.c_W)};
+  asked_.depth *= T.s;
+  clear_proposal();
+}
+
 }  // namespace pf

@@ -51,6 +51,9 @@ class KeyframeRelocaliser {
   /// The place by which the map was found again in this frame; null: none.
   const Mat6* found_covariance() const;
 
+  /// All of W is moved.
+  void move(const Similarity& T);
+
   int kept_views() const { return views_.count(); }
   PlaceKeeper& keeper() { return keeper_; }
 

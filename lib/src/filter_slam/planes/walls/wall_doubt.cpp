@@ -2,54 +2,10 @@
 
 #include "filter_slam/features/wall_rays.h"
 #include "filter_slam/planes/plane_points.h"
-#include "filter_slam/planes/tuning.h"
+#include "map/wall_votes.h"
 #include "model/camera_at.h"
 
 namespace pf {
-namespace {
-
-using namespace tuning::plane_doubt;
-
-/// The image in cells: those whose middle shows the wall, with no other before it, and those with points that do not lie on it.
-class Cover {
- public:
-  Cover(const Filter& filter, const Map& map, int wall)
-      : filter_(filter), camera_(camera_at(filter.state(), Scalar(0))) {
-    const Camera& lens = filter.lens();
-    for (int k = 0; k < kCells * kCells; ++k) {
-      const Vec2 pixel((static_cast<Scalar>(k % kCells) + Scalar(0.5)) * static_cast<Scalar>(lens.width) / kCells,
-                       (static_cast<Scalar>(k / kCells) + Scalar(0.5)) * static_cast<Scalar>(lens.height) / kCells);
-      Vec3 ray_C;
-      Scalar range = 0;
-      if (unproject(lens, pixel, &ray_C) && first_wall(filter, map, camera_.p_W, camera_.q_WC * ray_C, &range) == wall)
-        wall_ |= 1u << k;
-    }
-  }
-  void add(const Vec3& p_W) {
-    const Camera& lens = filter_.lens();
-    Vec2 pixel;
-    if (!project(lens, Vec3(camera_.q_WC.conjugate() * (p_W - camera_.p_W)), &pixel)) return;
-    const int column = static_cast<int>(pixel.x() * kCells / static_cast<Scalar>(lens.width));
-    const int row = static_cast<int>(pixel.y() * kCells / static_cast<Scalar>(lens.height));
-    if (column >= 0 && column < kCells && row >= 0 && row < kCells) hidden_ |= 1u << (row * kCells + column);
-  }
-  /// Whether at most half of what should show the wall is free of such points.
-  bool is_wide() const { return 2 * bits(wall_ & hidden_) >= bits(wall_); }
-
- private:
-  static int bits(unsigned set) {
-    int count = 0;
-    for (; set != 0; set &= set - 1) ++count;
-    return count;
-  }
-
-  const Filter& filter_;
-  CameraAt camera_;
-  unsigned wall_ = 0, hidden_ = 0;
-};
-
-}  // namespace
-
 void WallDoubt::judge(int plane_entry) {
   PlaneEntry& wall = map_.planes[plane_entry];
   const State& state = filter_.state();
@@ -57,8 +13,10 @@ void WallDoubt::judge(int plane_entry) {
   const FoldRule rule = fold_rule(settings_, wall);
   const Scalar noise = rule.roughness * rule.roughness;
   const Scalar side = plane_distance(state.frame_of(block), block.xyz(), camera_at(state, Scalar(0)).p_W);
-  Cover cover(filter_, map_, plane_entry);
-  int on_it = outline_plane(filter_, map_, plane_entry, nullptr).folded, refused = 0, behind = 0;
+  const CameraAt camera = camera_at(state, Scalar(0));
+  WallCover cover(map_.planes, FilterPlanes{filter_, map_}, plane_entry, filter_.lens(), {camera.q_WC, camera.p_W});
+  WallVotes votes;
+  votes.on = outline_plane(filter_, map_, plane_entry, nullptr).folded;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     Scalar d, variance;
     Mat3 covariance;
@@ -70,28 +28,18 @@ void WallDoubt::judge(int plane_entry) {
     if (!elsewhere && !(certain_.is_settled(i) && certain_.is_certain(i, &covariance))) continue;
     if (!is_before_wall(filter_, map_, plane_entry, filter_.point(slot))) continue;
     if (!filter_.distance(wall.slot, slot, &d, &variance)) continue;
-    if (d * d > kRefusedGate * (variance + noise)) {
-      ++refused;
-      behind += d * side < Scalar(0);
-      cover.add(filter_.point(slot));
-    } else if (d * d < rule.gate * (variance + noise)) {
-      ++on_it;
-    }
+    if (votes.add(side < Scalar(0) ? -d : d, variance + noise, rule.gate)) cover.add(filter_.point(slot));
   }
-  const auto contradict = [on_it](int points) { return points >= kMinRefused && points > kRefusedShare * on_it; };
-  // Points vouch for a wall that patches are refused on, half as many where not one is off it.
-  const bool vouched = on_it >= (refused > 0 ? kMinRefused : kMinRefused / 2);
-  const bool denied =
-      (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && !vouched);
-  if (!wall.doubted && (denied || contradict(behind) || (contradict(refused) && cover.is_wide()))) {
-    settings_.hooks.say("wall ", wall.id, " rejected: ", on_it, " points lie on it, ", refused, " do not (", behind,
-                        " behind it); ", static_cast<int>(wall.outliers), " points left it, ",
+  votes.hide_most = cover.is_wide();
+  if (!wall.doubted && votes.contradict(wall)) {
+    settings_.hooks.say("wall ", wall.id, " rejected: ", votes.on, " points lie on it, ", votes.off, " do not (",
+                        votes.behind, " behind it); ", static_cast<int>(wall.outliers), " points left it, ",
                         wall.refused / PlaneEntry::kRefusedParts, " patches were found elsewhere");
     doubt(plane_entry);
-  } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
+  } else if (wall.doubted && votes.uphold()) {
     wall.doubted = false;
     wall.outliers = wall.upheld = wall.refused = 0;
-    settings_.hooks.say("wall ", wall.id, " accepted again: ", on_it, " points lie on it, ", refused, " do not");
+    settings_.hooks.say("wall ", wall.id, " accepted again: ", votes.on, " points lie on it, ", votes.off, " do not");
   }
 }
 
@@ -100,7 +48,7 @@ void WallDoubt::doubt(int plane_entry) {
   const int plane = wall.slot;
   const bool has_taught = filter_.state().block[plane].children > 0 || wall.refused + wall.upheld + wall.outliers > 0;
   if (has_taught && wall.prior[0] > Scalar(0)) {
-    filter_.forget_prior(plane, wall.prior_covariance(), kDoubtedPrior);
+    filter_.forget_prior(plane, wall.prior_covariance(), tuning::plane_doubt::kDoubtedPrior);
     for (Scalar& c : wall.prior) c = Scalar(0);
   }
   filter_.state().for_each_planar(plane, [&](int slot) {

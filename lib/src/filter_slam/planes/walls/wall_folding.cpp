@@ -6,7 +6,7 @@
 #include "filter_slam/features/tuning.h"
 #include "filter_slam/features/wall_rays.h"
 #include "filter_slam/planes/plane_points.h"
-#include "geometry/small_cholesky.h"
+#include "map/wall_consensus.h"
 #include "model/camera_at.h"
 
 namespace pf {
@@ -74,41 +74,9 @@ unsigned WallFolding::find_consensus(int plane_entry, const int* slots, int coun
   const auto S = [&](int i, int j) {
     return filter_.blocks().innovation_of<1>(i, j)(0, 0) + (i == j ? noise : Scalar(0));
   };
-  unsigned best = 0;
-  *size = 0;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    int t[3];
-    for (int& member : t) member = draw(&data_.random, count);
-    if (t[0] == t[1] || t[0] == t[2] || t[1] == t[2]) continue;
-    Mat3 S_tt;
-    Vec3 r_t;
-    for (int a = 0; a < 3; ++a) {
-      r_t(a) = -z[t[a]].predicted(0);
-      for (int b = 0; b < 3; ++b) S_tt(a, b) = S(t[a], t[b]);
-    }
-    SmallCholesky<3> cholesky;
-    if (!cholesky.factor(S_tt)) continue;
-    const Vec3 weighted = cholesky.solve<1>(r_t);
-    if (!(r_t.dot(weighted) < kTripleGate)) continue;
-    unsigned inliers = 0;
-    int found = 0;
-    for (int j = 0; j < count; ++j) {
-      bool is_inlier = j == t[0] || j == t[1] || j == t[2];
-      if (!is_inlier) {
-        const Vec3 S_jt(S(j, t[0]), S(j, t[1]), S(j, t[2]));
-        const Scalar r = -z[j].predicted(0) - S_jt.dot(weighted);
-        const Scalar variance = S(j, j) - S_jt.dot(cholesky.solve<1>(S_jt));
-        is_inlier = variance <= max_variance && r * r < rule.gate * variance;
-      }
-      if (!is_inlier) continue;
-      inliers |= 1u << j;
-      ++found;
-    }
-    if (found <= *size) continue;
-    *size = found;
-    best = inliers;
-  }
-  return best;
+  const auto limit = [&](int) { return max_variance; };
+  const auto r = [&](int j) { return -z[j].predicted(0); };
+  return find_wall_consensus(count, r, S, rule.gate, limit, &data_.random, size);
 }
 
 void WallFolding::fold_by_consensus(int plane_entry) {

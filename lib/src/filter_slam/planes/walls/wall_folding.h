@@ -37,11 +37,7 @@ class WallFolding {
   /// Whether a point is one of a plane that was found, which cannot merge into a wall that came into view late while the scale is open: it
   /// is where the wall is only in a map of the right size.
   bool is_on_found_plane(int entry) const;
-  /// The largest set of these points (a bit each) that agree with each other, and with the wall's prior, that they lie on it. A wall that
-  /// may be tilted, and a world whose scale is hardly known, leave every single point's distance uncertain; given three of the points,
-  /// those of the others are known.
-  ///
-  ///   after a triple t:   r_j|t = r_j - S_jt S_tt^-1 r_t,   S_j|t = S_jj - S_jt S_tt^-1 S_tj
+  /// The largest set of these points (a bit each) that agree that they lie on the wall (find_wall_consensus).
   unsigned find_consensus(int plane_entry, const int* slots, int count, int* size);
 
   const Settings& settings_;

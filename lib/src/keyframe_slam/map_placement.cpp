@@ -1,0 +1,77 @@
+#include "keyframe_slam/map_placement.h"
+
+#include <cmath>
+
+#include "keyframe_slam/adjustment/move_window.h"
+#include "keyframe_slam/start/tuning.h"
+
+namespace pf {
+
+Status MapPlacement::add_wall(const PlanePrior& prior, std::uint32_t* id) {
+  if (!kHasWalls || !settings_.planes || !start_.has_place() || start_.is_in_loaded_map() || second_.given)
+    return Status::kState;
+  const PlaneTable& table = map_.tables().planes;
+  // At a target the unit of length is known, and where walls that came before gave it.
+  const bool has_unit = start_.is_at_target() || (table.has_known() && !table.has_apart());
+  return walls_.add(prior, !has_unit, id);
+}
+
+void MapPlacement::tend_walls(Scalar* median_depth) {
+  PlaneTable& table = map_.tables().planes;
+  if (!kHasWalls || !table.has_known()) return;
+  if (table.has_apart()) {
+    const Vec3 first_W = start_.first_place_W();
+    const Scalar factor = walls_.find_factor(first_W, motion_.body().p_W);
+    if (!(factor > Scalar(0))) return;
+    record_.init();
+    move(Similarity::about(first_W, factor), median_depth);
+    walls_.meet(start_.first_covariance(), first_W);
+    const std::uint32_t before = tracking_.map_id();
+    if (tracking_.state() != SlamState::kStarting) {
+      tracking_.rename_map();
+      map_.tables().anchors.move(before, tracking_.map_id(), Similarity());
+    }
+    settings_.hooks.say("walls of the plan come into view: map ", before, " is scaled by ", fixed(factor, 3),
+                        " and goes on as map ", tracking_.map_id(), " in metres");
+  } else {
+    if (!walls_.has_begun()) walls_.begin(start_.first_covariance(), start_.first_place_W(), 0);
+    move(walls_.compare(mapping_.adjustment()), median_depth);
+  }
+  move(walls_.maintain(mapping_.adjustment(), motion_.view()), median_depth);
+  mapping_.adjustment().set_place_covariance(walls_.pose_covariance(motion_.body().p_W));
+}
+
+void MapPlacement::scale_by_second_pose(Scalar* median_depth) {
+  const SecondPose second = second_;
+  if (record_.progress().pending()) return;
+  const Vec3 first_W = start_.first_place_W();
+  const bool is_now = second.is_frame(frame_.report.t_ns) && tracking_.is_tracked(frame_.report);
+  const Vec3 at_W = is_now ? motion_.body().p_W : second.estimate_W;
+  const Scalar moved = (at_W - first_W).norm();
+  const Scalar scale = (second.p_W - first_W).norm() / moved;
+  second_ = SecondPose();
+  record_.init();
+  if (!(is_now || second.estimated) || !(moved > tuning::second_pose::kMinSecondShift * *median_depth) ||
+      !std::isfinite(scale)) {
+    settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera moved too little (",
+                        fixed(moved, 4), " with a median depth of ", fixed(*median_depth, 2), ")");
+    return;
+  }
+  move(Similarity::about(first_W, scale), median_depth);
+  mark_ = MarkedPose();
+  settings_.hooks.say("map ", tracking_.map_id(), " is scaled by ", fixed(scale, 3),
+                      ", to the distance of the second pose");
+}
+
+void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
+  move_window(T, &map_, &planes_, &motion_);
+  mapping_.adjustment().move(T);
+  map_.tables().anchors.move(tracking_.map_id(), tracking_.map_id(), T);
+  relocaliser_.move(T);
+  *median_depth *= T.s;
+  mark_.q_WC = (T.q * mark_.q_WC).normalized();
+  mark_.p_W = T.of(mark_.p_W);
+  mark_.covariance = T.of_pose_covariance(mark_.covariance);
+}
+
+}  // namespace pf

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "keyframe_slam/keyframe_mapping.h"
+#include "keyframe_slam/memory/keyframe_anchors.h"
+#include "keyframe_slam/start/keyframe_start.h"
+#include "keyframe_slam/walls/keyframe_walls.h"
+
+/// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, or walls.
+
+namespace pf {
+
+/// The pose that the caller marked.
+struct MarkedPose {
+  bool is_set = false;
+  std::int64_t t_ns = 0;
+  Quat q_WC = Quat::Identity();
+  Vec3 p_W = Vec3::Zero();
+  Mat6 covariance = Mat6::Zero();
+};
+
+/// Moves everything that is in the coordinates of the map.
+class MapPlacement {
+ public:
+  MapPlacement(const Settings& settings, KeyframeMap& map, const Frame& frame, TrackingState& tracking,
+               KeyframeMotion& motion, KeyframePlanes& planes, KeyframeAnchors& anchors, KeyframeMapping& mapping,
+               KeyframeRelocaliser& relocaliser, KeyframeRecord& record, KeyframeStart& start, SecondPose& second)
+      : settings_(settings),
+        map_(map),
+        frame_(frame),
+        tracking_(tracking),
+        motion_(motion),
+        planes_(planes),
+        anchors_(anchors),
+        mapping_(mapping),
+        relocaliser_(relocaliser),
+        record_(record),
+        start_(start),
+        second_(second) {}
+
+  bool layout(Arena& arena) { return walls_.layout(arena); }
+  void init() {
+    walls_.init();
+    mark_ = MarkedPose();
+  }
+
+  /// Adds a wall. kState: planes are off, or W is not the plan's; kFull: there is no room for it.
+  Status add_wall(const PlanePrior& prior, std::uint32_t* id);
+  /// After the adjustment of a keyframe. While the unit of length is not known, walls stay apart until most points lie on them in one unit;
+  /// the map gets another id where poses were given out in the old one. Multiplies *median_depth.
+  void tend_walls(Scalar* median_depth);
+  /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known,
+  /// its place is the solved record's.
+  void scale_by_second_pose(Scalar* median_depth);
+  /// The map has begun again with other poses, of which the newest keyframe has this frame's: anchors stay where they are before it.
+  void keep_anchors(const CameraView& before, const CameraView& now) {
+    anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
+  }
+
+  /// Marks the pose of this frame.
+  void mark_pose() {
+    mark_ = {true, frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  }
+  const MarkedPose& mark() const { return mark_; }
+  const KeyframeWalls& walls() const { return walls_; }
+
+ private:
+  void move(const Similarity& T, Scalar* median_depth);
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  const Frame& frame_;
+  TrackingState& tracking_;
+  KeyframeMotion& motion_;
+  KeyframePlanes& planes_;
+  KeyframeAnchors& anchors_;
+  KeyframeMapping& mapping_;
+  KeyframeRelocaliser& relocaliser_;
+  KeyframeRecord& record_;
+  KeyframeStart& start_;
+  SecondPose& second_;
+  KeyframeWalls walls_{settings_, map_, frame_, planes_};
+  MarkedPose mark_;
+};
+
+}  // namespace pf
