@@ -1,5 +1,5 @@
 """pf-sim box: a wrong plan is refined, taken as exact it misleads, and a wall that is not there is doubted; rendered, patches of the walls
-alone track the camera."""
+alone track the camera; the window tracks by points on them."""
 
 import json
 import pathlib
@@ -41,6 +41,9 @@ def main():
         # Three frames are spoilt by the one patch that is taken in first, and what begins in them is refused for good.
         run(BIN / "pf-sim", "box", "--no-points", "--seeds", 1, "--first-seed", 1, "--frames", 240, "--gross", 0.05, "--json", file, "--cases", "refined")
         first = json.loads(file.read_text())["cases"]["refined"]
+        # The window: points on walls, and no patches.
+        run(BIN / "pf-sim", "box", "--backend", "window", "--patches", 0, "--seeds", 1, "--first-seed", 41, "--frames", 400, "--json", file, "--cases", "refined", "absent")
+        window = json.loads(file.read_text())["cases"]
     rendered = alone["refined"]
     refined, exact, absent = cases["refined"], cases["exact"], cases["absent"]
     rmse = [case["rmse_m"]["worst"] for case in (refined, exact, absent)]
@@ -55,6 +58,11 @@ def main():
         fail(f"patches alone: {rendered['rmse_m']}, {rendered['tracked_share']}, {rendered['patches']}")
     if not rendered["nees_pose"]["mean"] < 12:
         fail(f"patches alone: pose NEES {rendered['nees_pose']['mean']}")
+    rejected = window["absent"]["wrong_wall"]
+    if not (window["refined"]["rmse_m"]["worst"] < 0.02 and window["refined"]["walls"]["doubted"] == 0 and window["refined"]["nees_pose"]["mean"] < 12):
+        fail(f"the window: {window['refined']['rmse_m']}, {window['refined']['walls']}, NEES {window['refined']['nees_pose']['mean']}")
+    if not (window["absent"]["rmse_m"]["worst"] < 0.02 and rejected["doubted_runs"] == 1 and rejected["seen_before_s"]["worst"] < 2.5):
+        fail(f"the window, a wall that is not there: {window['absent']['rmse_m']}, {rejected}")
     wrong = alone["absent"]["wrong_wall"]
     if not (alone["absent"]["rmse_m"]["worst"] < 0.025 and wrong["doubted_runs"] == SEEDS and wrong["seen_before_s"]["worst"] < 2.5):
         fail(f"patches alone, a wall that is not there: {alone['absent']['rmse_m']}, {wrong}")
