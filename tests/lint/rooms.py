@@ -41,8 +41,9 @@ LIBRARY = {
     "keyframe_slam/memory": KEYFRAME_PLANES,
     "keyframe_slam/tracking": KEYFRAME_MEMORY,
     "keyframe_slam/adjustment": KEYFRAME_TRACKING,
+    "keyframe_slam/walls": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
     "keyframe_slam/start": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
-    "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/start"],
+    "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/walls", "keyframe_slam/start"],
     "session": FRAME + ["memory", "filter_slam", "keyframe_slam"],
     "api": FRAME + ["session"],
 }

@@ -524,10 +524,10 @@ typedef struct pf_wall_prior {
 } pf_wall_prior_t;
 
 /* Adds a wall to the map, before the first frame or later; *id is that of a pf_plane_t. With the
- * filter it takes three rows of the state (capacity.max_state_dim), for which features that were not
- * seen in the last frame are evicted while tracking. Points that lie on it fold into it, and planes that are
- * found merge into it. It is refined by what is seen, and never dissolved. Where what is seen
- * contradicts it, it is rejected: it takes no points then. As long as there are walls no new map
+ * filter it takes three rows of the state (capacity.max_state_dim), for which features that were
+ * not seen in the last frame are evicted while tracking. Points that lie on it fold into it, and
+ * planes that are found merge into it. It is refined by what is seen, and never dissolved. Where
+ * that contradicts it, it is rejected: it takes no points then. As long as there are walls no new map
  * begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
  * PF_ERROR_STATE where the place of W is not known to you: before pf_start_from_pose, or
  * pf_start_from_target with points or with a place, and in a map that began after that start's;
