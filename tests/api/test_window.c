@@ -80,7 +80,6 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   static uint8_t block[3u << 20] __attribute__((aligned(64)));
   static uint8_t pixels[640 * 480];
   const pf_image_t image = {pixels, 640, 480, 640, 1000};
-  const double none[3] = {0, 0, 0};
   double scratch[8], information[49];
   pf_observation_t observation;
   pf_wall_prior_t prior;
@@ -100,7 +99,6 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   prior.outline_P[1][0] = 1, prior.outline_P[1][1] = -1;
   prior.outline_P[2][1] = 1;
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_observations(slam, 1, &observation, 1));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_control(slam, none, none));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &prior, &id)); /* before a start in its frame */
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_get_gauge_information(slam, scratch, 8, information));
   /* A picture without a corner: starting, and no crash. */

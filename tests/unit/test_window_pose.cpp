@@ -283,6 +283,30 @@ void test_motion_should_keep_a_covariance_while_an_absurd_speed_decays() {
   TEST_ASSERT_TRUE(smallest_corrected > 0);
 }
 
+/// v_W += R dv_C, w_C += dw_C in the next prediction alone.
+void test_motion_should_follow_a_control_once() {
+  Settings settings;
+  settings.body = BodyLayout::with_constant_velocity();
+  settings.motion_noise = {Scalar(1), Scalar(1)};
+  KeyframeMotion motion(settings), without(settings);
+  Body body;
+  body.q_WC = exp_so3(Vec3(0, 0, Scalar(0.5)));
+  body.v_W = Vec3(1, 0, 0);
+  for (KeyframeMotion* one : {&motion, &without})
+    one->set(body, Mat6(Mat6::Identity() * Scalar(1e-4)), Scalar(0.1), Scalar(0.1));
+  const Vec3 dv_C(0, Scalar(0.4), 0), dw_C(0, 0, Scalar(0.3));
+  motion.push_control(dv_C / 2, dw_C / 2);
+  motion.push_control(dv_C / 2, dw_C / 2);
+  for (int frame = 0; frame < 2; ++frame)
+    for (KeyframeMotion* one : {&motion, &without})
+      one->advance(frame * 100000000, (frame + 1) * 100000000, false, false);
+  const Vec3 dv_W = body.q_WC * dv_C;
+  TEST_ASSERT_TRUE((motion.body().v_W - without.body().v_W - dv_W).norm() < Scalar(1e-5));
+  TEST_ASSERT_TRUE((motion.body().w_C - without.body().w_C - dw_C).norm() < Scalar(1e-5));
+  TEST_ASSERT_TRUE((motion.body().p_W - without.body().p_W - Scalar(0.2) * dv_W).norm() < Scalar(1e-5));
+  TEST_ASSERT_TRUE(motion.is_sound());
+}
+
 }  // namespace
 
 int main() {
@@ -292,6 +316,7 @@ int main() {
   RUN_TEST(test_fit_pose_should_stay_at_the_prediction_without_matches);
   RUN_TEST(test_log_density_should_be_that_of_the_joint_covariance);
   RUN_TEST(test_motion_should_learn_velocities_from_poses);
+  RUN_TEST(test_motion_should_follow_a_control_once);
   RUN_TEST(test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known);
   RUN_TEST(test_motion_should_keep_a_covariance_where_matches_leave_a_direction_open);
   RUN_TEST(test_motion_should_keep_a_covariance_while_an_absurd_speed_decays);

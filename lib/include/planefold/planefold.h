@@ -527,8 +527,8 @@ typedef struct pf_wall_prior {
  * filter it takes three rows of the state (capacity.max_state_dim), for which features that were
  * not seen in the last frame are evicted while tracking. Points that lie on it fold into it, and
  * planes that are found merge into it. It is refined by what is seen, and never dissolved. Where
- * that contradicts it, it is rejected: it takes no points then. As long as there are walls no new map
- * begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
+ * that contradicts it, it is rejected: it takes no points then. As long as there are walls no new
+ * map begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
  * PF_ERROR_STATE where the place of W is not known to you: before pf_start_from_pose, or
  * pf_start_from_target with points or with a place, and in a map that began after that start's;
  * with plane.enabled 0; with the window also after pf_set_second_pose, and in a loaded map.
@@ -596,7 +596,7 @@ PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns,
 
 /* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation).
  * The next frame's prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s],
- * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with PF_MOTION_INERTIAL and with the window. */
+ * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with PF_MOTION_INERTIAL. */
 PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */

@@ -96,7 +96,7 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
   tracking_.begin_frame(data_.since_last_ns);
-  if (!tracking_.has_pose() || data_.since_last_ns == 0) return;
+  if (!tracking_.has_pose() || data_.since_last_ns == 0) return motion_.forget_control();
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
 }
@@ -140,6 +140,8 @@ void KeyframeSlam::learn() {
   }
   const bool is_keyframe = mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
   const int newest = map_.keyframes.newest();
+  if (record_.progress().pending() && map_.keyframes.count() == 1 && map_.keyframes[newest].t_ns == frame_.report.t_ns)
+    placement_.begin_at_walls(&data_.median_depth);
   const bool is_adjusted =
       newest >= 0 && map_.keyframes[newest].t_ns == frame_.report.t_ns && map_.keyframes.count() > 1;
   if (tracked && is_adjusted && !record_.progress().pending()) placement_.tend_walls(&data_.median_depth);

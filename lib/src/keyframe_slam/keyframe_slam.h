@@ -36,6 +36,8 @@ class KeyframeSlam {
   /// Marks the pose of the last frame. kState: there is none.
   Status mark_pose();
 
+  /// Known change of the velocities in camera axes, until the next frame.
+  void push_control(const Vec3& dv_C, const Vec3& dw_C) { motion_.push_control(dv_C, dw_C); }
   MapPlacement& placement() { return placement_; }
   KeyframeStart& start() { return start_; }
 

@@ -4,6 +4,7 @@
 
 #include "keyframe_slam/adjustment/move_window.h"
 #include "keyframe_slam/start/tuning.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
 
@@ -14,6 +15,21 @@ Status MapPlacement::add_wall(const PlanePrior& prior, std::uint32_t* id) {
   // At a target the unit of length is known, and where walls that came before gave it.
   const bool has_unit = start_.is_at_target() || (table.has_known() && !table.has_apart());
   return walls_.add(prior, !has_unit, id);
+}
+
+void MapPlacement::begin_at_walls(Scalar* median_depth) {
+  if (!kHasWalls || !map_.tables().planes.has_apart() || start_.is_at_target()) return;
+  const int count = walls_.place_points(tuning::keyframe_tracking::kYoung, median_depth);
+  if (count == 0) return;
+  record_.init();
+  walls_.meet(start_.first_covariance(), start_.first_place_W());
+  settings_.hooks.say("map ", tracking_.map_id(), " begins before walls of the plan, with ", count, " points on them");
+}
+
+Mat6 MapPlacement::map_covariance(const Vec3& p_W) const {
+  const KeyframeAdjustment& adjustment = mapping_.adjustment();
+  if (!walls_.has_begun()) return adjustment.map_covariance();
+  return adjustment.shape().given_held + walls_.pose_covariance(p_W);
 }
 
 void MapPlacement::tend_walls(Scalar* median_depth) {

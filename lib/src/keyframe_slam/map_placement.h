@@ -45,6 +45,9 @@ class MapPlacement {
 
   /// Adds a wall. kState: planes are off, or W is not the plan's; kFull: there is no room for it.
   Status add_wall(const PlanePrior& prior, std::uint32_t* id);
+  /// After the points of the map's first keyframe, which is at a pose that the caller knows: where most of them begin before walls, they
+  /// begin on these, and the map in metres, without a record of first frames.
+  void begin_at_walls(Scalar* median_depth);
   /// After the adjustment of a keyframe. While the unit of length is not known, walls stay apart until most points lie on them in one unit;
   /// the map gets another id where poses were given out in the old one. Multiplies *median_depth.
   void tend_walls(Scalar* median_depth);
@@ -61,6 +64,8 @@ class MapPlacement {
     mark_ = {true, frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
   }
   const MarkedPose& mark() const { return mark_; }
+  /// What a pose of the map at p_W may be off in W, (theta, p), beside what it may be off in the map.
+  Mat6 map_covariance(const Vec3& p_W) const;
   const KeyframeWalls& walls() const { return walls_; }
 
  private:

@@ -46,6 +46,7 @@ inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance th
 
 /// Points before a wall that is hardly known.
 namespace plane_walls {
+inline constexpr Scalar kOffWall = Scalar(0.5);       ///< sigma of a new point relative to the depth of its wall
 inline constexpr int kTrials = 60;                    ///< triples of points
 inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
 inline constexpr int kMinOnWall = 2;                  ///< one in so many points before a wall lies on it

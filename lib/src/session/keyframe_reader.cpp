@@ -15,7 +15,7 @@ int KeyframeReader::kept_views() const { return slam_.kept_views(); }
 void KeyframeReader::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   // Of a frame that repeats the one before, the pose is that one's.
   slam_.motion().predict_pose(t_ns > slam_.frame().report.t_ns ? slam_.body_ns() : t_ns, t_ns, body, covariance);
-  *covariance += slam_.mapping().adjustment().map_covariance();
+  *covariance += slam_.placement().map_covariance(body->p_W);
 }
 
 ///   q_KC = q_Kᵀ q_C,   p_KC = R_Kᵀ (p_C - p_K);   both poses are taken as independent, which overstates the covariance

@@ -25,7 +25,7 @@ Status MapCalls::add_anchor(const AnchorRequest& asked, std::uint32_t* id) {
   const Body& body = window_->motion().body();
   const KeyframeAnchors::View view = {{body.q_WC, body.p_W},
                                       window_->motion().pose_covariance(),
-                                      window_->mapping().adjustment().map_covariance(),
+                                      window_->placement().map_covariance(window_->motion().body().p_W),
                                       window_->median_depth(),
                                       window_->frame().report.t_ns};
   KeyframeAnchors anchors(map_.anchors, window_->map(), window_->planes());

@@ -45,7 +45,7 @@ class Session {
   // --- what comes in
   bool takes_images() const { return data_.kind != FrameKind::kObservations; }
   bool takes_observations() const { return has_filter() && data_.kind != FrameKind::kImages; }
-  bool takes_control() const { return has_filter() && settings_.constant_velocity; }
+  bool takes_control() const { return settings_.constant_velocity; }
   /// The start that was chosen needs images.
   bool needs_images() const { return !has_filter() || filter_->start().takes_images_only(); }
 
@@ -56,7 +56,9 @@ class Session {
   /// The first `count` of the inbox.
   Status push_observations(int count, std::int64_t t_ns);
   /// Known change of the velocities in camera axes, until the next frame.
-  void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
+  void push_control(const Vec3& dv_C, const Vec3& dw_C) {
+    has_filter() ? filter_->motion().push_control(dv_C, dw_C) : window_->push_control(dv_C, dw_C);
+  }
   Status mark_pose() { return has_filter() ? filter_->mark_pose() : window_->mark_pose(); }
   /// What a map holds beside what images tell.
   MapCalls map_calls() { return MapCalls(settings_, map_, filter_, window_); }

@@ -9,6 +9,7 @@
 #include "frame/start/target_surface.h"
 #include "frame/tuning.h"
 #include "geometry/ray_plane.h"
+#include "map/tuning.h"
 #include "model/camera_at.h"
 #include "observe/inverse_depth.h"
 

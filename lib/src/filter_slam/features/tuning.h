@@ -17,7 +17,6 @@ inline constexpr Scalar kCorner = Scalar(0.4);      ///< tangent of the angles a
 /// Planes known beforehand.
 namespace plane_walls {
 inline constexpr Scalar kKnownScale = Scalar(0.05);  ///< sigma of the log scale, below which any wall may take points
-inline constexpr Scalar kOffWall = Scalar(0.5);      ///< sigma of a new point relative to the depth of its wall
 }  // namespace plane_walls
 
 }  // namespace pf::tuning

@@ -20,7 +20,7 @@ struct KeyframePoint {
   bool has_depth = false;        ///< rho was triangulated, or is the target's
   bool faces_host = false;       ///< its appearance is the host's
   std::int8_t plane = -1;        ///< entry of the plane that it lies on, or -1
-  RhoPrior remembered = {0, 0};  ///< of a point that a place brought back: what it knew of rho then
+  RhoPrior remembered = {0, 0};  ///< of a point that a place or a plan has put where it is: what that knew of rho
   Vec2 pixel = Vec2::Zero();     ///< where it was last seen, and from where
   CameraView seen_from;
 };

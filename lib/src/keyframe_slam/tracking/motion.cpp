@@ -67,6 +67,12 @@ void KeyframeMotion::apply(const Transition& transition, Data* data) {
 
 void KeyframeMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, t_ns), kMaxGapNs)));
+  if (data_.dv_C != Vec3::Zero() || data_.dw_C != Vec3::Zero()) {
+    Transition control;
+    change_velocity(data_.body, settings_.body, data_.dv_C, data_.dw_C, &control);
+    apply(control, &data_);
+    forget_control();
+  }
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
     if (settings_.constant_velocity && nothing_measured) damp(dt);

@@ -23,7 +23,13 @@ class KeyframeMotion {
   /// Sets the body. pose: covariance of (theta, p); speed, rate: standard deviations of the velocities [m/s, rad/s].
   void set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate);
 
-  /// Predicts the body from one frame's time to the next. Without measurements its speed decays.
+  /// Known change of the velocities in camera axes, until the next frame.
+  void push_control(const Vec3& dv_C, const Vec3& dw_C) {
+    data_.dv_C += dv_C;
+    data_.dw_C += dw_C;
+  }
+  void forget_control() { data_.dv_C = data_.dw_C = Vec3::Zero(); }
+  /// Predicts the body from one frame's time to the next, with the control that was pushed. Without measurements its speed decays.
   void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
   /// Updates the body with a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
   /// already; velocities and covariance follow by Kalman's gain
@@ -66,6 +72,7 @@ class KeyframeMotion {
   struct Data {
     Body body;
     Covariance P = Covariance::Zero();  ///< of (theta, p, v, w); without velocities their rows are zero
+    Vec3 dv_C = Vec3::Zero(), dw_C = Vec3::Zero();
   };
 
   void predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;

@@ -62,6 +62,48 @@ Status KeyframeWalls::add(const PlanePrior& prior, bool is_apart, std::uint32_t*
   return Status::kOk;
 }
 
+/// Distance along a ray to the nearest wall of the plan; zero: it meets none.
+Scalar KeyframeWalls::range_in_plan(const Vec3& c_W, const Vec3& ray_W) const {
+  Scalar nearest = 0;
+  for (const int k : used_entries(table_)) {
+    Scalar at = 0;
+    if (!table_[k].known) continue;
+    const PlaneAt plan = {planes_.plane(k).plan};
+    if (!meets_outline(plan, table_[k].two_sided, table_[k].plan, c_W, ray_W, &at)) continue;
+    if (nearest == Scalar(0) || at < nearest) nearest = at;
+  }
+  return nearest;
+}
+
+/// Each by itself, as a point that a place has brought back: with a depth that is known to a share. What the plan is off in all of them is
+/// not in that, but in how well the map's size is known.
+int KeyframeWalls::place_points(int least, Scalar* depth) {
+  Scalar* const range = map_.scratch().number;
+  const int newest = map_.keyframes.newest();
+  const auto range_of = [&](int i) {
+    const bool is_new = map_.point(i).host == newest && !map_.point(i).has_depth;
+    return is_new ? range_in_plan(map_.keyframes[newest].p_W, map_.ray_W(i)) : Scalar(0);
+  };
+  int count = 0;
+  for (const int i : used_entries(map_)) {
+    const Scalar r = range_of(i);
+    if (r > Scalar(0)) range[count++] = r;
+  }
+  if (count < least) return 0;
+  std::nth_element(range, range + count / 2, range + count);
+  *depth = range[count / 2];
+  for (const int i : used_entries(map_)) {
+    const Scalar r = range_of(i), sigma = tuning::plane_walls::kOffWall / r;
+    if (!(r > Scalar(0))) continue;
+    KeyframePoint& point = map_.point(i);
+    point.rho = 1 / r;
+    point.variance = sigma * sigma;
+    point.remembered = {point.rho, sigma};
+    point.has_depth = true;
+  }
+  return count;
+}
+
 Scalar KeyframeWalls::find_factor(const Vec3& first_W, const Vec3& c_W) {
   using namespace tuning::start_before_walls;
   Scalar factor[kMaxRatios];

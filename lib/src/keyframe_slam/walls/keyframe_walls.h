@@ -25,6 +25,9 @@ class KeyframeWalls {
   /// Adds a wall. is_apart: the map's unit of length is not known, so that nothing can be compared with it. kFull: no room.
   Status add(const PlanePrior& prior, bool is_apart, std::uint32_t* id);
 
+  /// Puts the newest keyframe's points on the walls that their rays meet in the plan, roughly. Returns how many; *depth: their median
+  /// distance. With fewer than `least` nothing changes.
+  int place_points(int least, Scalar* depth);
   /// The factor on lengths about the first place with which most points that a camera at c_W sees lie on walls; zero: not clear.
   Scalar find_factor(const Vec3& first_W, const Vec3& c_W);
   /// The map is in metres now, to the share to which points agree.
@@ -46,6 +49,7 @@ class KeyframeWalls {
 
  private:
   bool is_used(int k) const { return table_.used(k) && table_[k].known && table_[k].counts(); }
+  Scalar range_in_plan(const Vec3& c_W, const Vec3& ray_W) const;
   void place(int k);
   void join(int k, const KeyframeAdjustment& adjustment, const CameraView& view);
   bool join_found(int k, const CameraView& view, const int* row, int count);
