@@ -114,6 +114,14 @@ bool Outputs::create(TextFile& file, const std::string& name, std::string& error
   return true;
 }
 
+bool Outputs::open_again(TextFile& file, const std::string& name, std::string& error) const {
+  if (!file.open_again(path(name))) {
+    error = path(name) + ": cannot be written (" + std::strerror(errno) + "); choose another --out";
+    return false;
+  }
+  return true;
+}
+
 bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool truth, bool relative,
                    const pf_camera_t& camera, bool inertial, std::string& error) {
   folder_ = folder;
@@ -157,9 +165,15 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
   return true;
 }
 
-/// Opens the files of poses in the world of a map, in place of those of the map before.
+/// Opens the files of poses in the world of a map, in place of those of the map before; of a map that the run has come back to, again.
 bool Outputs::open_map(int map, std::string& error) {
   const std::string end = map == 1 ? "" : "_" + std::to_string(map);
+  if (map <= maps_opened_) {
+    map_ = map;
+    return open_again(trajectory_, "trajectory" + end + ".txt", error) &&
+           open_again(trajectory_all_, "trajectory_all" + end + ".txt", error) &&
+           open_again(covariance_, "covariance" + end + ".csv", error);
+  }
   if (!create(trajectory_, "trajectory" + end + ".txt", error) ||
       !create(trajectory_all_, "trajectory_all" + end + ".txt", error) ||
       !create(covariance_, "covariance" + end + ".csv", error)) {
@@ -168,7 +182,7 @@ bool Outputs::open_map(int map, std::string& error) {
   trajectory_.rows() = "# T_WC of the tracked frames: timestamp tx ty tz qx qy qz qw\n";
   trajectory_all_.rows() = "# T_WC of every frame with a pose, coasting ones too: timestamp tx ty tz qx qy qz qw\n";
   covariance_.rows() = "# rows of trajectory" + end + ".txt: timestamp, 6x6 of (theta, p) in W, row-major [rad, m]\n";
-  map_ = map;
+  map_ = maps_opened_ = map;
   return true;
 }
 

@@ -43,6 +43,7 @@ class Outputs {
 
  private:
   bool create(TextFile& file, const std::string& name, std::string& error) const;
+  bool open_again(TextFile& file, const std::string& name, std::string& error) const;
   bool open_map(int map, std::string& error);
   bool open_anchors(std::string& error);
 
@@ -50,7 +51,8 @@ class Outputs {
   TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, planes_, patches_, truth_, relative_, lens_,
       inertial_, anchors_;
   TrackRows track_rows_;
-  int map_ = 0;  ///< whose files are open
+  int map_ = 0;          ///< whose files are open
+  int maps_opened_ = 0;  ///< so far: 1 .. this
 };
 
 }  // namespace pf::capture

@@ -284,15 +284,19 @@ bool Session::reset(std::string& error) {
   return begin(error);
 }
 
-/// Numbers the maps of the run across resets, after which the library counts from 1 again.
+/// Numbers the maps of the run in which something was tracked, across resets, after which the library counts from 1 again. A map that was
+/// joined to an earlier one goes on under that one's number.
 void Session::count_map(const FrameView& view) {
-  if (was_reset_ || view.report.map_id != map_id_) {
-    map_ += map_tracked_ ? 1 : 0;
-    map_tracked_ = false;
+  if (was_reset_) {
+    map_of_id_.clear();
   }
   was_reset_ = false;
-  map_id_ = view.report.map_id;
-  map_tracked_ = map_tracked_ || view.tracked;
+  const auto known = map_of_id_.find(view.report.map_id);
+  map_ = known != map_of_id_.end() ? known->second : maps_ + 1;
+  if (view.tracked && known == map_of_id_.end()) {
+    map_of_id_[view.report.map_id] = map_;
+    maps_ = map_;
+  }
 }
 
 bool Session::push(const pf_image_t& image, FrameView& view, std::string& error) {

@@ -3,6 +3,7 @@
 
 #include <planefold/planefold.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -76,10 +77,10 @@ class Session {
   std::string start_;
   std::string start_note_;  ///< of the target's file or the mask, until it was told
   Log log_;
-  int map_ = 1;               ///< of the run
-  uint32_t map_id_ = 1;       ///< the library's, since the last reset
-  bool map_tracked_ = false;  ///< some frame in this map was tracked
-  bool was_reset_ = false;    ///< since the last frame
+  int map_ = 1;                        ///< of the run
+  int maps_ = 0;                       ///< in which some frame was tracked
+  std::map<uint32_t, int> map_of_id_;  ///< of these, by the library's ids since the last reset
+  bool was_reset_ = false;             ///< since the last frame
 };
 
 }  // namespace pf::capture

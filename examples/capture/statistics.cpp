@@ -104,10 +104,12 @@ void Statistics::add(const FrameView& view) {
   if (view.tracked) {
     ++tracked_;
     last_tracked_ = view.index;
-    if (maps_.empty() || maps_.back().map != view.map) {
-      maps_.push_back({view.map, view.index, 0});
+    const auto is_it = [&](const MapCount& count) { return count.map == view.map; };
+    auto map = std::find_if(maps_.begin(), maps_.end(), is_it);
+    if (map == maps_.end()) {
+      map = maps_.insert(map, {view.map, view.index, 0});
     }
-    ++maps_.back().tracked;
+    ++map->tracked;
     start_frame_ = start_frame_ < 0 ? view.index : start_frame_;
     inliers_.add(report.inliers);
     attempts_.add(report.attempts);

@@ -72,6 +72,16 @@ bool TextFile::create(const std::string& path) {
   return file_ >= 0;
 }
 
+bool TextFile::open_again(const std::string& path) {
+  close();
+  path_ = path;
+  failure_.clear();
+  rows_.clear();
+  file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  size_ = file_ >= 0 ? static_cast<long long>(::lseek(file_, 0, SEEK_END)) : 0;
+  return file_ >= 0;
+}
+
 bool TextFile::write_rows(std::string& error) {
   if (file_ >= 0 && failure_.empty() && !rows_.empty()) {
     if (write_all(file_, rows_)) {

@@ -19,6 +19,8 @@ class TextFile {
 
   /// An empty file. false: errno says why.
   bool create(const std::string& path);
+  /// One that was closed, behind its last row. The same.
+  bool open_again(const std::string& path);
   bool is_open() const { return file_ >= 0; }
   /// Rows that write_rows() is to write; each must end with a newline by then.
   std::string& rows() { return rows_; }

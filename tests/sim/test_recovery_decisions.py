@@ -43,7 +43,7 @@ def check(folder, scene, backend, dark_s):
     shown = min(found, back + MAX_FRAMES) + 1
     require(run.number(back, "attempts") > 0, "search", f"the first image, frame {back}, is not searched", run, back, shown)
     require(found < back + MAX_FRAMES, "found", f"not found within {MAX_FRAMES} frames of light; the decisions of each:", run, back, shown)
-    discarded = run.logged("is discarded")
+    discarded = run.logged(" begins: ")
     require(discarded is None, "map", f"a new map begins in frame {discarded and discarded[0]}: {discarded and discarded[1]}", run, back, shown)
     if found == len(run):
         return

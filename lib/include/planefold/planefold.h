@@ -38,9 +38,11 @@
  * both against the points in view. Otherwise the pose coasts, and nothing is added to the map until
  * it was found again; after motion.coast_s it is lost.
  * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable
- * images, it is discarded and a new one begins: a new map_id, a new W, and, without a target in
- * view, a new unit of length. With walls (pf_add_wall) it is searched for until it is found, and so
- * is a map that was loaded (pf_load_map).
+ * images, it is left and a new one begins: a new map_id, a new W, and, without a target in view, a
+ * new unit of length. The window keeps the places of a map that is left (capacity.max_places):
+ * where two views of the new map are recognised in it, the new map goes on in its W and unit, under
+ * its map_id. With walls (pf_add_wall) a map is searched for until it is found, and so is one that
+ * was loaded (pf_load_map).
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H

@@ -65,14 +65,15 @@ class TrackingState {
   /// Begins a new map after the old one was discarded because it was not found again. It may begin without a target. The id of a W in which
   /// there was a pose is not used again.
   void begin_map() {
-    const std::uint32_t map_id = data_.map_id + (data_.has_pose ? 1 : 0);
+    const std::uint32_t last = data_.last_map_id, map_id = data_.has_pose ? last + 1 : data_.map_id;
     data_ = Data();
     data_.map_id = map_id;
+    data_.last_map_id = last > map_id ? last : map_id;
     data_.may_skip_target = true;
     data_.belief.begin_elsewhere();
   }
-  /// Gives the map another id, since its unit of length has changed.
-  void rename_map() { ++data_.map_id; }
+  /// Gives the map another id: a new one, since its unit of length has changed, or that of the earlier map that it is joined to.
+  void rename_map(std::uint32_t joined_to = 0) { data_.map_id = joined_to != 0 ? joined_to : ++data_.last_map_id; }
   /// Marks this frame's pose as measured, but too uncertain to use.
   void set_unusable() { data_.unusable = true; }
   /// Decides the state at the end of a frame, and of one that is not tracked the reason. Returns the status of the frame.
@@ -117,9 +118,10 @@ class TrackingState {
     bool depths_known = false;  ///< in the last frame
     bool lens_said = false;     ///< that it has changed
     std::uint32_t map_id = 1;
-    std::int64_t usable_ns = 0;  ///< of usable images while lost
-    bool started_over = false;   ///< in this frame
-    int failed_updates = 0;      ///< in a row
+    std::uint32_t last_map_id = 1;  ///< of all so far
+    std::int64_t usable_ns = 0;     ///< of usable images while lost
+    bool started_over = false;      ///< in this frame
+    int failed_updates = 0;         ///< in a row
     std::int64_t last_tracked_ns = 0;
     PoseBelief belief;  ///< that the pose is right
   };

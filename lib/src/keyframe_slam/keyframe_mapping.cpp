@@ -45,7 +45,7 @@ bool KeyframeMapping::wants_keyframe(bool young, Scalar median_depth) const {
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }
 
-/// As a keyframe. In a map that was loaded, where the pose is against its places, one that is near comes back.
+/// As a keyframe. In a map that began elsewhere, where the pose is against its places, one that is near comes back.
 void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   record_.note_keyframe();
   const int leaving = leaving_keyframe(map_, settings_.window_keyframes);
@@ -54,14 +54,14 @@ void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   map_.keyframes[keyframe].matches_by_motion = !young;
   if (young) triangulate_inliers(young);
   adjust();
-  if (saving_.is_loaded()) keeper_.bring_near(motion_.view(), median_depth, 1);
+  if (map_.keyframes.began_elsewhere()) keeper_.bring_near(motion_.view(), median_depth, 1);
 }
 
 /// New points at corners of the newest keyframe's image, which is this frame's.
 void KeyframeMapping::add_points(bool pending, Scalar median_depth) {
   const int newest = map_.keyframes.newest();
   Keyframe& keyframe = map_.keyframes[newest];
-  if (keyframe.number > 1) {
+  if (!map_.keyframes.is_first(newest)) {
     keyframe.v_W = motion_.body().v_W;
     keyframe.w_C = motion_.body().w_C;
     keyframe.row_depth = pending ? settings_.start_depth : median_depth;

@@ -69,9 +69,11 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   const bool is_gone = may_leave && tracking_.needs_new_map(settings_.restart_ns);
   if (is_gone || (data_.is_map_fixed && tracking_.has_pose() && !map_.tables().planes.has_known())) {
     const std::uint32_t map_id = tracking_.map_id();
+    if (is_gone) relocaliser_.leave_map(map_id);
     discard_map();
     tracking_.begin_map();
-    settings_.hooks.say("map ", map_id, " is discarded, map ", tracking_.map_id(), " begins: ",
+    settings_.hooks.say("map ", map_id, map_.places.has_other() ? " is left, map " : " is discarded, map ",
+                        tracking_.map_id(), " begins: ",
                         is_gone ? "it was not found again within motion.restart_s"
                                 : "part of the image stands still while the rest moves, and is masked from now on");
   }
@@ -146,7 +148,10 @@ void KeyframeSlam::learn() {
       newest >= 0 && map_.keyframes[newest].t_ns == frame_.report.t_ns && map_.keyframes.count() > 1;
   if (tracked && is_adjusted && !record_.progress().pending()) placement_.tend_walls(&data_.median_depth);
   // A keyframe has work enough.
-  if (tracked && !is_keyframe && !record_.progress().pending()) relocaliser_.note_view(data_.median_depth);
+  if (!tracked || is_keyframe || record_.progress().pending()) return;
+  relocaliser_.note_view(data_.median_depth);
+  const MapJoin join = relocaliser_.take_join();
+  if (join.map_id != 0) placement_.join(join, &data_.median_depth);
 }
 
 /// Returns the status of the frame.

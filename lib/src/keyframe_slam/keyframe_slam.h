@@ -45,7 +45,6 @@ class KeyframeSlam {
   const TrackingState& tracking() const { return tracking_; }
   const NoiseModel& noise() const { return noise_; }
   const KeyframeMap& map() const { return map_; }
-  const KeyframePlanes& planes() const { return planes_; }
   const MapPlacement& placement() const { return placement_; }
   const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.

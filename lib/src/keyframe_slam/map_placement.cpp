@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/table_entries.h"
+#include "geometry/so3.h"
 #include "keyframe_slam/adjustment/move_window.h"
 #include "keyframe_slam/start/tuning.h"
 #include "keyframe_slam/tracking/tuning.h"
@@ -77,6 +79,30 @@ void MapPlacement::scale_by_second_pose(Scalar* median_depth) {
   mark_ = MarkedPose();
   settings_.hooks.say("map ", tracking_.map_id(), " is scaled by ", fixed(scale, 3),
                       ", to the distance of the second pose");
+}
+
+/// What the recognised view may be off in the other map, all keyframes may: with the rotation about that view, and the scale away from it.
+void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
+  const std::uint32_t before = tracking_.map_id();
+  record_.init();
+  move(join.T, median_depth);
+  const Vec3 at_W = join.T.of(join.view.c_W);
+  const auto of_join = [&](const Vec3& p_W) {
+    const Vec3 away = p_W - at_W;
+    Mat6 A = Mat6::Identity();
+    A.bottomLeftCorner<3, 3>() = -hat(away);
+    Mat6 P = A.lazyProduct(join.covariance).lazyProduct(A.transpose());
+    P.bottomRightCorner<3, 3>() += join.sigma_scale * join.sigma_scale * away * away.transpose();
+    return P;
+  };
+  for (const int k : used_entries(map_.keyframes)) map_.keyframes[k].covariance += of_join(map_.keyframes[k].p_W);
+  mapping_.adjustment().add_to_map(of_join(motion_.body().p_W));
+  map_.keyframes.set_began_elsewhere();
+  map_.places.join(join.map_id);
+  tracking_.rename_map(join.map_id);
+  map_.tables().anchors.move(before, join.map_id, Similarity());
+  settings_.hooks.say("map ", before, " is recognised in map ", join.map_id, " and joined to it, scaled by ",
+                      fixed(join.T.s, 3));
 }
 
 void MapPlacement::move(const Similarity& T, Scalar* median_depth) {

@@ -54,6 +54,8 @@ class MapPlacement {
   /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known,
   /// its place is the solved record's.
   void scale_by_second_pose(Scalar* median_depth);
+  /// The map is joined to an earlier one: it goes on in that one's W and unit, under its id.
+  void join(const MapJoin& join, Scalar* median_depth);
   /// The map has begun again with other poses, of which the newest keyframe has this frame's: anchors stay where they are before it.
   void keep_anchors(const CameraView& before, const CameraView& now) {
     anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
@@ -67,6 +69,7 @@ class MapPlacement {
   /// What a pose of the map at p_W may be off in W, (theta, p), beside what it may be off in the map.
   Mat6 map_covariance(const Vec3& p_W) const;
   const KeyframeWalls& walls() const { return walls_; }
+  const KeyframePlanes& planes() const { return planes_; }
 
  private:
   void move(const Similarity& T, Scalar* median_depth);

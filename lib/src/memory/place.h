@@ -40,10 +40,11 @@ struct PlacePoint {
 struct KeptPlace {
   static constexpr int kMaxPoints = 24;
 
-  std::uint32_t id = 0;  ///< number of the keyframe that it was; 0: this entry is free
-  bool is_back = false;  ///< its points are those of the back end: of the window, or of the state
-  int count = 0;         ///< points
-  Scalar depth = 1;      ///< of them, median [m]
+  std::uint32_t id = 0;      ///< number of the keyframe that it was; 0: this entry is free
+  std::uint32_t map_id = 0;  ///< of another map that it belongs to, where W is another one; 0: of the present one
+  bool is_back = false;      ///< its points are those of the back end: of the window, or of the state
+  int count = 0;             ///< points
+  Scalar depth = 1;          ///< of them, median [m]
   Quat q_WK = Quat::Identity();
   Vec3 p_WK = Vec3::Zero();
   Mat6 covariance = Mat6::Zero();  ///< of (theta, p) in W

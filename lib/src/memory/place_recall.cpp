@@ -56,8 +56,9 @@ void PlaceRecall::collect_place(const PlaceTable& places, int p, PlaceMatches* o
   const KeptPlace& place = places[p];
   add_points(places, p, out);
   for (const int other : used_entries(places))
-    if (other != p && view_distance2(place.q_WK, place.p_WK, place.depth, places[other].q_WK, places[other].p_WK,
-                                     places[other].depth) < tuning::place::kNear * tuning::place::kNear)
+    if (other != p && place.map_id == places[other].map_id &&
+        view_distance2(place.q_WK, place.p_WK, place.depth, places[other].q_WK, places[other].p_WK,
+                       places[other].depth) < tuning::place::kNear * tuning::place::kNear)
       add_points(places, other, out);
 }
 

@@ -16,6 +16,7 @@ int PlaceTable::most_redundant(const KeptPlace& another) const {
   for (int i = 0; i <= capacity_; ++i)
     for (int j = i + 1; j <= capacity_; ++j) {
       const KeptPlace &a = at(i), &b = at(j);
+      if (a.map_id != b.map_id) continue;
       const Scalar d2 = view_distance2(a.q_WK, a.p_WK, a.depth, b.q_WK, b.p_WK, b.depth);
       if (nearest >= Scalar(0) && !(d2 < nearest)) continue;
       nearest = d2;
@@ -23,6 +24,18 @@ int PlaceTable::most_redundant(const KeptPlace& another) const {
       worst = a_goes ? i : j;
     }
   return worst;
+}
+
+void PlaceTable::leave(std::uint32_t map_id) {
+  for (const int i : used_entries(*this)) {
+    place_[i].is_back = false;
+    if (is_present(i)) place_[i].map_id = map_id;
+  }
+}
+
+void PlaceTable::join(std::uint32_t map_id) {
+  for (const int i : used_entries(*this))
+    if (place_[i].map_id == map_id) place_[i].map_id = 0;
 }
 
 int PlaceTable::entry_for(const KeptPlace& place) const {
@@ -42,6 +55,7 @@ void PlaceTable::move(const Similarity& T) {
   const float f = static_cast<float>(T.s);
   for (const int i : used_entries(*this)) {
     KeptPlace& place = place_[i];
+    if (place.map_id != 0) continue;
     place.q_WK = (T.q * place.q_WK).normalized();
     place.p_WK = T.of(place.p_WK);
     place.covariance = T.of_pose_covariance(place.covariance);

@@ -24,10 +24,26 @@ class PlaceTable {
   void clear() {
     for (int i = 0; i < capacity_; ++i) place_[i] = KeptPlace();
   }
+  /// Removes those of the present map.
+  void clear_present() {
+    for (int i = 0; i < capacity_; ++i)
+      if (is_present(i)) place_[i] = KeptPlace();
+  }
+  /// The present map is left: its places go on as those of the map with this id.
+  void leave(std::uint32_t map_id);
+  /// The present map is joined to the one with this id, in whose coordinates its own places are now.
+  void join(std::uint32_t map_id);
 
   int capacity() const { return capacity_; }
   int count() const;
   bool used(int i) const { return place_[i].id != 0; }
+  bool is_present(int i) const { return used(i) && place_[i].map_id == 0; }
+  /// Whether there are places of other maps.
+  bool has_other() const {
+    for (int i = 0; i < capacity_; ++i)
+      if (used(i) && !is_present(i)) return true;
+    return false;
+  }
   KeptPlace& operator[](int i) { return place_[i]; }
   const KeptPlace& operator[](int i) const { return place_[i]; }
   /// Entry of the place with this id, or -1.
@@ -38,7 +54,7 @@ class PlaceTable {
   /// Keeps a place in a free entry, or in that of the one that is then most redundant: of the two of all that are nearest to each other,
   /// the one with fewer points, the older one among equals. Where that is the new one it is not kept. Returns its entry, or -1.
   int keep(const KeptPlace& place);
-  /// All of W is moved.
+  /// All of W is moved. Places of other maps are in another W.
   void move(const Similarity& T);
 
   /// A place comes back to the window as a keyframe.

@@ -36,4 +36,12 @@ inline constexpr int kRounds = 6;                     ///< of the refinement
 inline constexpr Scalar kInflation = Scalar(4);       ///< of the covariance of such a pose, for what the map shares
 }  // namespace place_search
 
+/// A map that is recognised in an earlier one.
+namespace map_join {
+inline constexpr Scalar kOneScale = Scalar(1.12);  ///< ratio of the scales that two points have in common
+inline constexpr int kMinRatios = 4;               ///< points that have the same scale
+inline constexpr int kMinSame = 2;                 ///< one in so many points has the scale of most
+inline constexpr int kRival = 2;                   ///< matches of the place that is recognised, for each of another one
+}  // namespace map_join
+
 }  // namespace pf::tuning

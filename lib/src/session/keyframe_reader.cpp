@@ -77,7 +77,7 @@ void KeyframeReader::place_feature(int i, FeatureView* out) const {
 bool KeyframeReader::surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const {
   const KeyframePoint& point = slam_.map().point(i);
   if (!point.has_depth || point.plane < 0) return false;
-  *normal_W = slam_.planes().plane(point.plane).frame.R_WP.col(2);
+  *normal_W = slam_.placement().planes().plane(point.plane).frame.R_WP.col(2);
   if (normal_W->dot(viewer_W - slam_.map().position(i)) < 0) *normal_W = -*normal_W;
   return true;
 }
@@ -104,10 +104,10 @@ MapCounts KeyframeReader::counts() const {
 
 ///   (alpha, beta, delta) = (-a, -b, h)
 PlaneView KeyframeReader::plane(int i) const {
-  const KeyframePlane& plane = slam_.planes().plane(i);
+  const KeyframePlane& plane = slam_.placement().planes().plane(i);
   PlaneView out;
   out.id = map_.planes[i].id;
-  out.points = slam_.planes().points_on(i);
+  out.points = slam_.placement().planes().points_on(i);
   out.fixed_points = out.trial = 0;  // every point on it has a depth of its own
   const bool is_wall = map_.planes[i].known;
   out.known = is_wall;
@@ -134,7 +134,7 @@ bool KeyframeReader::hit(const Vec2& pixel, HitView* hit) const {
   *hit = HitView();
   for (const int k : used_entries(map_.planes)) {
     if (!map_.planes[k].counts()) continue;
-    const KeyframePlane& plane = slam_.planes().plane(k);
+    const KeyframePlane& plane = slam_.placement().planes().plane(k);
     Vec3 at;
     Mat3 J_origin, J_direction, J_plane;
     if (!intersect_ray_plane(plane.frame, Vec3::Zero(), body.p_W, direction, &at, &J_origin, &J_direction, &J_plane))

@@ -28,7 +28,7 @@ Status MapCalls::add_anchor(const AnchorRequest& asked, std::uint32_t* id) {
                                       window_->placement().map_covariance(window_->motion().body().p_W),
                                       window_->median_depth(),
                                       window_->frame().report.t_ns};
-  KeyframeAnchors anchors(map_.anchors, window_->map(), window_->planes());
+  KeyframeAnchors anchors(map_.anchors, window_->map(), window_->placement().planes());
   return anchors.add(asked, window_->tracking().map_id(), view, id);
 }
 

@@ -114,7 +114,10 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
   const AdjustedPoses& poses = bundle_.poses;
   const int newest = poses.free - 1;
   map_covariance_ = given_held;
-  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, poses.pose[poses.seen_in - 1].p_W};
+  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0};
+  for (int a = poses.free; a < poses.seen_in; ++a)
+    for (int b = poses.free; b < a; ++b)
+      shape_.held_span = std::max(shape_.held_span, (poses.pose[a].p_W - poses.pose[b].p_W).norm());
   int held = -1;
   for (int c = poses.free; c < poses.seen_in && choice_.is_away(); ++c) {
     const int k = poses.keyframe[c];
@@ -124,7 +127,6 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
     Mat6 A = Mat6::Identity();
     A.bottomLeftCorner<3, 3>() = -hat(Vec3(poses.pose[newest].p_W - map_.keyframes[held].p_W));
     map_covariance_ += A * map_.keyframes[held].covariance * A.transpose();
-    shape_.held_W = map_.keyframes[held].p_W;
   }
   map_.keyframes[poses.keyframe[newest]].covariance = map_covariance_;
 }

@@ -18,7 +18,7 @@ struct AdjustmentShape {
   bool is_determined = false;      ///< there are covariances
   bool is_away = false;            ///< the map's first keyframe is not connected with the newest one
   Mat6 given_held = Mat6::Zero();  ///< covariance of the newest keyframe's (theta, p), given those that were held fixed
-  Vec3 held_W = Vec3::Zero();      ///< place of the newest of these
+  Scalar held_span = 0;            ///< largest distance of two of these, which holds the size of the map
 };
 
 class KeyframeAdjustment {
@@ -44,6 +44,8 @@ class KeyframeAdjustment {
   Scalar log_rho_variance(int row) const;
   /// What the newest keyframe may be off in W in addition to what it may be off against those that were held.
   void set_place_covariance(const Mat6& of_held);
+  /// The map may be off by more, until the next adjustment.
+  void add_to_map(const Mat6& covariance) { map_covariance_ += covariance; }
   /// The camera has been found at a place of this covariance: what it sees is known no better, until the next adjustment.
   void begin_at(const Mat6& place) { map_covariance_ = place; }
   /// All of W is moved.

@@ -48,7 +48,7 @@ void KeyframeChoice::connect(bool settled) {
 
 bool KeyframeChoice::has_first_keyframe() const {
   for (int k = 0; k < map_.keyframes.capacity(); ++k)
-    if (is_connected_[k] && map_.keyframes[k].number == 1) return true;
+    if (is_connected_[k] && map_.keyframes.is_first(k)) return true;
   return false;
 }
 

@@ -21,17 +21,19 @@ bool KeyframeMap::layout(Arena& arena) {
 }
 
 void KeyframeMap::init() {
-  lens_.init(settings_.camera, settings_.lens);
+  clear();
   keyframes.init();
   places.clear();
-  for (int i = 0; i < capacity(); ++i) point_[i] = KeyframePoint();
 }
 
 void KeyframeMap::clear() {
   frame_.forget_all();
   map_.features.clear();
   map_.planes.keep_known();
-  init();
+  keyframes.begin_map();
+  places.clear_present();
+  lens_.init(settings_.camera, settings_.lens);
+  for (int i = 0; i < capacity(); ++i) point_[i] = KeyframePoint();
 }
 
 HostPixel KeyframeMap::host_pixel(int i) const {

@@ -31,7 +31,7 @@ class KeyframeMap {
 
   bool layout(Arena& arena);
   void init();
-  /// Removes all points, planes and keyframes. Walls of a plan stay as they were when they came.
+  /// Removes all points, planes and keyframes. Walls of a plan stay as they were when they came, and places of other maps.
   void clear();
 
   KeyframeTable keyframes;

@@ -36,9 +36,15 @@ class KeyframeTable {
     return arena.ok();
   }
   void init() {
+    last_number_ = 0;
+    begin_map();
+  }
+  /// Removes all keyframes. The next one is the map's first; numbers are not used again.
+  void begin_map() {
     for (int k = 0; k < capacity_; ++k) keyframe_[k] = Keyframe();
-    count_ = last_number_ = 0;
+    count_ = 0;
     newest_ = -1;
+    first_number_ = last_number_ + 1;
   }
 
   static constexpr std::int64_t kLongAgo = INT64_MIN;  ///< time of a keyframe that has come back
@@ -47,6 +53,11 @@ class KeyframeTable {
   int count() const { return count_; }
   /// Number of keyframes that there have been.
   int numbered() const { return last_number_; }
+  /// The one with which the map began, and its W.
+  bool is_first(int k) const { return keyframe_[k].number == first_number_; }
+  /// W began elsewhere: in a map that was saved, or in another one that this one was joined to.
+  bool began_elsewhere() const { return first_number_ == kNone; }
+  void set_began_elsewhere() { first_number_ = kNone; }
   /// Entry of the newest one, or -1.
   int newest() const { return newest_; }
   bool used(int k) const { return keyframe_[k].number > 0; }
@@ -77,7 +88,10 @@ class KeyframeTable {
     return k;
   }
   /// The next one is counted from here on.
-  void number_from(int last) { last_number_ = last; }
+  void number_from(int last) {
+    last_number_ = last;
+    set_began_elsewhere();
+  }
   void remove(int k) {
     keyframe_[k] = Keyframe();
     --count_;
@@ -98,7 +112,8 @@ class KeyframeTable {
   Keyframe* keyframe_ = nullptr;
   BundlePixel* pixel_ = nullptr;  ///< capacity_ x points_
   int capacity_ = 0, points_ = 0;
-  int count_ = 0, last_number_ = 0;
+  static constexpr int kNone = -1;
+  int count_ = 0, last_number_ = 0, first_number_ = 1;
   int newest_ = -1;
 };
 

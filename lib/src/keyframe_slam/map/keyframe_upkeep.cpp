@@ -68,7 +68,7 @@ int add_keyframe(const Frame& frame, const CameraView& view, int kept, KeyframeM
 
 void keep_first_keyframe(KeyframeMap* map) {
   for (const int k : used_entries(map->keyframes)) {
-    if (map->keyframes[k].number == 1) continue;
+    if (map->keyframes.is_first(k)) continue;
     for (const int i : used_entries(*map))
       if (map->point(i).host == k) map->drop(i);
     map->keyframes.remove(k);

@@ -78,7 +78,7 @@ bool KeyframeAnchors::find(std::uint32_t id, Reference* out) const {
     return true;
   }
   const int p = map_.places.entry_of(id);
-  if (p < 0) return false;
+  if (p < 0 || !map_.places.is_present(p)) return false;
   const KeptPlace& kept = map_.places[p];
   *out = {id, {kept.q_WK, kept.p_WK}, kept.covariance};
   return true;
@@ -100,7 +100,8 @@ KeyframeAnchors::Reference KeyframeAnchors::nearest(const RelativePlace& T_WV, S
   }
   for (const int p : used_entries(map_.places)) {
     const KeptPlace& kept = map_.places[p];
-    if (!kept.is_back) offer({kept.id, {kept.q_WK, kept.p_WK}, kept.covariance}, kept.depth);
+    if (map_.places.is_present(p) && !kept.is_back)
+      offer({kept.id, {kept.q_WK, kept.p_WK}, kept.covariance}, kept.depth);
   }
   return best;
 }

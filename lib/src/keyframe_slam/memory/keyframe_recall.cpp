@@ -3,6 +3,7 @@
 #include "base/table_entries.h"
 #include "frame/tuning.h"
 #include "keyframe_slam/map/tuning.h"
+#include "memory/tuning.h"
 
 namespace pf {
 
@@ -33,6 +34,23 @@ bool KeyframeRecall::is_alike(const CameraView& view, Scalar median_depth) {
   return recall_.is_alike(map_.camera(), sources(), at, [&](int i, PlaceMatches* out) { return collect(i, out); });
 }
 
+bool KeyframeRecall::find_other(Recalled* best, PlaceMatches* matches) {
+  Recalled rival;
+  recall_.match_places(map_.places);
+  const auto collect_other = [&](int p, PlaceMatches* out) {
+    if (!map_.places.used(p) || map_.places.is_present(p)) return PlaceSource();
+    recall_.collect_place(map_.places, p, out);
+    return PlaceSource{map_.places[p].id, map_.places[p].q_WK, map_.places[p].p_WK};
+  };
+  if (!recall_.find(map_.camera(), map_.places.capacity(), tuning::relocaliser::kAboutView, collect_other, best,
+                    &rival))
+    return false;
+  if (best->inliers < tuning::map_join::kRival * rival.inliers) return false;
+  *matches = PlaceMatches();
+  recall_.collect_place(map_.places, map_.places.entry_of(best->place), matches);
+  return true;
+}
+
 /// Keyframes, and behind them places.
 int KeyframeRecall::sources() const { return map_.keyframes.capacity() + map_.places.capacity(); }
 
@@ -48,7 +66,7 @@ PlaceSource KeyframeRecall::collect(int i, PlaceMatches* out) const {
     return {static_cast<std::uint32_t>(keyframe.number), keyframe.q_WC, keyframe.p_W};
   }
   const int p = i - keyframes;
-  if (!map_.places.used(p) || map_.places[p].is_back) return PlaceSource();
+  if (!map_.places.is_present(p) || map_.places[p].is_back) return PlaceSource();
   recall_.collect_place(map_.places, p, out);
   return {map_.places[p].id, map_.places[p].q_WK, map_.places[p].p_WK};
 }

@@ -22,6 +22,9 @@ class KeyframeRecall {
   void describe_image(const Tracker& tracker) { recall_.describe_image(tracker); }
   /// Whether the described image looks like another part of the map. view: its pose. median_depth: of what it sees.
   bool is_alike(const CameraView& view, Scalar median_depth);
+  /// Where the described image looks like a place of another map, and no other place of those like it as much: the pose there, and points
+  /// of that place with their pixels.
+  bool find_other(Recalled* best, PlaceMatches* matches);
 
  private:
   int sources() const;

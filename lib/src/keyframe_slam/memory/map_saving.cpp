@@ -31,6 +31,7 @@ int MapSaving::list_sources() const {
   const int keyframes = count;
   for (const int p : used_entries(map_.places)) {
     const KeptPlace& place = map_.places[p];
+    if (!map_.places.is_present(p)) continue;
     const bool is_keyframe =
         std::any_of(source_, source_ + keyframes, [&](const Source& other) { return other.id == place.id; });
     if (is_keyframe) continue;

@@ -126,7 +126,7 @@ void PlaceKeeper::bring_near(const CameraView& view, Scalar depth, int most) {
     for (const int p : used_entries(map_.places)) {
       const KeptPlace& place = map_.places[p];
       const Scalar d2 = view_distance2(view.q_WC, view.c_W, depth, place.q_WK, place.p_WK, place.depth);
-      if (place.is_back || !(d2 < least)) continue;
+      if (!map_.places.is_present(p) || place.is_back || !(d2 < least)) continue;
       least = d2;
       nearest = place.id;
     }

@@ -17,7 +17,7 @@ void add_corners(const Settings& settings, const ImageSearch& search, int keyfra
       if (frame->full()) return CornerUse::kNoRoom;
       Vec3 ray_C;
       // Of the first frame the motion is not known; its pixels are corrected when they are seen again.
-      const bool has_ray = host.number > 1 && unproject(map->camera(), pixel, &ray_C);
+      const bool has_ray = !map->keyframes.is_first(keyframe) && unproject(map->camera(), pixel, &ray_C);
       const Vec3 m = has_ray ? Vec3(host.q_WC * ray_C + host.p_W / depth) : Vec3::Zero();
       const int i = map->add(keyframe, has_ray ? at_frame_time(map->camera(), body, m, 1 / depth, pixel) : pixel);
       if (i < 0) return CornerUse::kNoRoom;

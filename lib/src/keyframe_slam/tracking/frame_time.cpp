@@ -9,7 +9,7 @@ namespace {
 
 /// Whether this is the second sight of a point of the first keyframe.
 bool is_seen_again(const KeyframeMap& map, const Match& match) {
-  return map.feature(match.feature).observations == 1 && map.keyframes[map.point(match.feature).host].number == 1;
+  return map.feature(match.feature).observations == 1 && map.keyframes.is_first(map.point(match.feature).host);
 }
 
 /// Of a point's pixel since it was last accepted [px/s].

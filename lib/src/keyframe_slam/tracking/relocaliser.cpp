@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
+#include "belief/tuning.h"
 #include "frame/tuning.h"
 #include "geometry/so3.h"
 #include "memory/tuning.h"
@@ -22,27 +24,36 @@ const Mat6* KeyframeRelocaliser::found_covariance() const {
   return place >= 0 ? &map_.places[place].covariance : nullptr;
 }
 
-/// One frame describes its image, and the next one compares: neither has much more to do than a keyframe.
+/// One frame describes its image, and the next one compares: neither has much more to do than a keyframe. With places of other maps it asks
+/// more often, whether it sees one of these.
 void KeyframeRelocaliser::note_view(Scalar median_depth) {
   if (settings_.kept.places == 0) return;
-  if (asked_.is_described) {
-    asked_.is_described = false;
-    return belief_.note_view(recall_.is_alike(asked_.view, asked_.depth));
-  }
+  if (asked_.last.is_described) return compare_view();
   const CameraView view = motion_.view();
-  if (asked_.depth > Scalar(0) && view_distance2(view.q_WC, view.c_W, median_depth, asked_.view.q_WC, asked_.view.c_W,
-                                                 asked_.depth) < tuning::place::kNear * tuning::place::kNear)
-    return;
-  asked_.view = view;
-  asked_.depth = median_depth;
+  const auto is_apart = [&](const Asked& from, Scalar bound) {
+    return !(from.depth > Scalar(0)) || view_distance2(view.q_WC, view.c_W, median_depth, from.view.q_WC, from.view.c_W,
+                                                       from.depth) >= bound * bound;
+  };
+  const bool is_new = is_apart(asked_.judged, tuning::place::kNear);
+  if (!is_new && !(map_.places.has_other() && is_apart(asked_.last, tuning::place::kApart))) return;
+  asked_.last = {view, median_depth, true};
+  if (is_new) asked_.judged = asked_.last;
   recall_.describe_image(tracker_);
-  asked_.is_described = true;
+}
+
+void KeyframeRelocaliser::compare_view() {
+  asked_.last.is_described = false;
+  if (asked_.judged.is_described) belief_.note_view(recall_.is_alike(asked_.last.view, asked_.last.depth));
+  asked_.judged.is_described = false;
+  // Where parts of this map look alike, so may parts of two maps.
+  const bool is_sure = belief_.most_elsewhere() > tuning::pose_belief::kTracked;
+  if (is_sure) joins_.look(asked_.last.view, asked_.last.depth);
 }
 
 /// Brings the place back that the image may show, and its rival, so that they can be searched for.
 bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
   recalled_ = 0;
-  asked_.is_described = false;
+  asked_.last.is_described = asked_.judged.is_described = false;
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   Recalled best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
@@ -101,10 +112,19 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   proposal_ = rival_ = PoseProposal();
 }
 
+void KeyframeRelocaliser::leave_map(std::uint32_t map_id) {
+  if (settings_.kept.places == 0) return;
+  for (const int k : used_entries(map_.keyframes)) keeper_.keep(k);
+  map_.places.leave(map_id);
+}
+
 void KeyframeRelocaliser::move(const Similarity& T) {
   views_.move(T);
-  asked_.view = {(T.q * asked_.view.q_WC).normalized(), T.of(asked_.view.c_W)};
-  asked_.depth *= T.s;
+  asked_.last.view = {(T.q * asked_.last.view.q_WC).normalized(), T.of(asked_.last.view.c_W)};
+  asked_.last.depth *= T.s;
+  asked_.judged.view = {(T.q * asked_.judged.view.q_WC).normalized(), T.of(asked_.judged.view.c_W)};
+  asked_.judged.depth *= T.s;
+  joins_.init();
   clear_proposal();
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "frame/pose_hypotheses.h"
-#include "keyframe_slam/memory/keyframe_recall.h"
+#include "keyframe_slam/memory/map_join.h"
 #include "keyframe_slam/memory/place_keeper.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
@@ -29,7 +29,8 @@ class KeyframeRelocaliser {
   void init() {
     views_.init();
     recall_.init();
-    asked_ = Asked();
+    asked_ = AskedViews();
+    joins_.init();
     clear_proposal();
   }
 
@@ -38,6 +39,10 @@ class KeyframeRelocaliser {
   /// After a tracked frame. Where it sees another part of the map than the last one that was asked about, the belief learns whether it
   /// looks like a part that is elsewhere.
   void note_view(Scalar median_depth);
+  /// Where that view has shown the present map to be in an earlier one. Nothing is known of it afterwards.
+  MapJoin take_join() { return joins_.take(); }
+  /// Keeps the keyframes of a map that is left as places of the map with this id.
+  void leave_map(std::uint32_t map_id);
   /// Drops the proposals of earlier frames, since the map is tracked.
   void clear_proposal() {
     proposal_ = rival_ = PoseProposal();
@@ -71,13 +76,18 @@ class KeyframeRelocaliser {
     }
   };
 
-  /// The last view that note_view() asked about.
+  /// A view that note_view() asks about.
   struct Asked {
     CameraView view;
     Scalar depth = 0;           ///< median; 0: there is none
     bool is_described = false;  ///< its image is, and has not been compared with the map yet
   };
+  struct AskedViews {
+    Asked last;
+    Asked judged;  ///< the last one that may look like another part of the map
+  };
 
+  void compare_view();
   bool recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival);
   Tried try_pose(const PoseHypothesis& about, const PoseProposal& before, Scalar median_depth);
 
@@ -93,7 +103,8 @@ class KeyframeRelocaliser {
   PoseProposal proposal_, rival_;  ///< of earlier frames
   std::uint32_t recalled_ = 0;     ///< place that the proposal comes from; 0: none
   bool recalled_in_vain_ = false;  ///< the last frame's place was not confirmed
-  Asked asked_;
+  AskedViews asked_;
+  JoinFinder joins_{map_, recall_};
 };
 
 }  // namespace pf

@@ -10,7 +10,7 @@ namespace pf::tuning {
 /// Points before a wall that the map has not measured.
 namespace keyframe_walls {
 inline constexpr Scalar kKnownBetter = 3;  ///< times as well as the wall, of a distance that places it
-inline constexpr int kRounds = 3;  ///< in which the comparison with the plan is linearised anew
+inline constexpr int kRounds = 3;          ///< in which the comparison with the plan is linearised anew
 }  // namespace keyframe_walls
 
 }  // namespace pf::tuning
