@@ -1,11 +1,11 @@
 // With an inertial unit the whole world can still be shifted, and turned with gravity, without any measurement or sample seeing it. Pixels
 // see no change of scale either; samples do.
-#include <Eigen/Eigenvalues>
-
 #include "filter/moving_start.h"
 #include "filter/vertical.h"
 #include "support/filter_scene.h"
 #include "support/inertial_cases.h"
+// After the library's own settings of Eigen.
+#include <Eigen/Eigenvalues>
 
 using namespace pf;
 
