@@ -42,6 +42,21 @@ bool sees_through_outline(const PlaneTable& planes, const Where& where, int wall
   return first < 0 || first == wall || range <= nearest;
 }
 
+/// Distance along a ray to the nearest wall of the plan, in lengths of direction_W; zero where it has none there. plan_of(entry): the frame
+/// in which the plan has a wall, rejected or not.
+template <class PlanOf>
+Scalar find_range_in_plan(const PlaneTable& planes, const PlanOf& plan_of, const Vec3& origin_W,
+                          const Vec3& direction_W) {
+  Scalar nearest = 0;
+  for (int k = 0; k < planes.capacity(); ++k) {
+    Scalar at = 0;
+    if (!planes.used(k) || !planes[k].known) continue;
+    if (!meets_outline({plan_of(k)}, planes[k].two_sided, planes[k].plan, origin_W, direction_W, &at)) continue;
+    if (nearest == Scalar(0) || at < nearest) nearest = at;
+  }
+  return nearest;
+}
+
 /// The factor u on lengths about c0_W with which a point f that a camera at c_W sees would lie on a wall through o with the normal n:
 ///
 ///   u = n . (o - c0) / n . (f - c0)

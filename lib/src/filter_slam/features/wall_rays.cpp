@@ -14,15 +14,12 @@ int first_wall(const Filter& filter, const Map& map, const Vec3& origin_W, const
 }
 
 Scalar range_in_plan(const Filter& filter, const Map& map, const Vec3& origin_W, const Vec3& direction_W) {
-  Scalar nearest = 0;
-  for (int k = 0; k < map.planes.capacity(); ++k) {
-    Scalar at = 0;
-    if (!map.planes.used(k) || !map.planes[k].known) continue;
-    const PlaneAt plan = {FilterPlanes{filter, map}(k).frame};
-    if (!meets_outline(plan, map.planes[k].two_sided, map.planes[k].plan, origin_W, direction_W, &at)) continue;
-    if (nearest == Scalar(0) || at < nearest) nearest = at;
-  }
-  return nearest;
+  return find_range_in_plan(
+      map.planes,
+      [&](int k) {
+        return FilterPlanes{filter, map}(k).frame;
+      },
+      origin_W, direction_W);
 }
 
 }  // namespace pf

@@ -62,19 +62,6 @@ Status KeyframeWalls::add(const PlanePrior& prior, bool is_apart, std::uint32_t*
   return Status::kOk;
 }
 
-/// Distance along a ray to the nearest wall of the plan; zero: it meets none.
-Scalar KeyframeWalls::range_in_plan(const Vec3& c_W, const Vec3& ray_W) const {
-  Scalar nearest = 0;
-  for (const int k : used_entries(table_)) {
-    Scalar at = 0;
-    if (!table_[k].known) continue;
-    const PlaneAt plan = {planes_.plane(k).plan};
-    if (!meets_outline(plan, table_[k].two_sided, table_[k].plan, c_W, ray_W, &at)) continue;
-    if (nearest == Scalar(0) || at < nearest) nearest = at;
-  }
-  return nearest;
-}
-
 /// Each by itself, as a point that a place has brought back: with a depth that is known to a share. What the plan is off in all of them is
 /// not in that, but in how well the map's size is known.
 int KeyframeWalls::place_points(int least, Scalar* depth) {
@@ -82,7 +69,8 @@ int KeyframeWalls::place_points(int least, Scalar* depth) {
   const int newest = map_.keyframes.newest();
   const auto range_of = [&](int i) {
     const bool is_new = map_.point(i).host == newest && !map_.point(i).has_depth;
-    return is_new ? range_in_plan(map_.keyframes[newest].p_W, map_.ray_W(i)) : Scalar(0);
+    const auto plan_of = [&](int k) { return planes_.plane(k).plan; };
+    return is_new ? find_range_in_plan(table_, plan_of, map_.keyframes[newest].p_W, map_.ray_W(i)) : Scalar(0);
   };
   int count = 0;
   for (const int i : used_entries(map_)) {

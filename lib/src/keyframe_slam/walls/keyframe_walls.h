@@ -49,7 +49,6 @@ class KeyframeWalls {
 
  private:
   bool is_used(int k) const { return table_.used(k) && table_[k].known && table_[k].counts(); }
-  Scalar range_in_plan(const Vec3& c_W, const Vec3& ray_W) const;
   void place(int k);
   void join(int k, const KeyframeAdjustment& adjustment, const CameraView& view);
   bool join_found(int k, const CameraView& view, const int* row, int count);
