@@ -151,6 +151,31 @@ void test_the_relative_covariance_should_be_that_of_what_is_measured() {
   TEST_ASSERT_TRUE(nis > 2.6 && nis < 3.4);
 }
 
+/// Nothing but the plan gives the size of a map before parallel walls: however often they are compared, it is known no better than the mean
+/// of their offsets.
+void test_comparing_again_should_not_make_up_information() {
+  Bench bench(10);
+  bench.sigma_scale = Scalar(0.12);
+  bench.plan[1] = bench.plan[0];
+  bench.plan[1].o_W += Scalar(2) * bench.plan[0].R_WP.col(0);
+  bench.draw();
+  bench.truth[0](2) = Scalar(0.05);
+  bench.truth[1](2) = Scalar(-0.06);
+  MeasuredWall seen[kWalls];
+  Similarity left = bench.draw_move();
+  for (int n = 0; n < 40; ++n) {
+    bench.see(left, 3e-3, seen);
+    const Similarity T = bench.gauge.compare(seen, 2, Scalar(1e6));
+    const Similarity back = {T.q.conjugate(), -(T.q.conjugate() * T.t) / T.s, 1 / T.s};
+    left = {(left.q * back.q).normalized(), left.of(back.t), left.s * back.s};
+  }
+  const Scalar sigma = std::sqrt(bench.gauge.plane_covariance(bench.plan[0])(2, 2));
+  const Scalar least = std::sqrt(bench.prior(2, 2) / 2);
+  std::printf("sigma of the distance %.4f, of the mean of two offsets %.4f\n", static_cast<double>(sigma),
+              static_cast<double>(least));
+  TEST_ASSERT_TRUE(sigma > Scalar(0.9) * least && sigma < Scalar(1.1) * least);
+}
+
 }  // namespace
 
 int main() {
@@ -159,6 +184,7 @@ int main() {
   RUN_TEST(test_the_covariance_of_the_first_pose_should_be_the_one_it_was_begun_with);
   RUN_TEST(test_forgetting_a_wall_should_take_back_what_it_told);
   RUN_TEST(test_a_wall_that_is_elsewhere_should_change_nothing);
+  RUN_TEST(test_comparing_again_should_not_make_up_information);
   RUN_TEST(test_the_relative_covariance_should_be_that_of_what_is_measured);
   return UNITY_END();
 }

@@ -24,6 +24,10 @@ Wide67 pose_gauge(const Vec3& p_W) {
   return J;
 }
 
+/// About the plan, wherever the wall was found: a shift of the map and of all walls with it is what no measurement sees, and G that changes
+/// from one to the next would see a part of it.
+Wide37 gauge_of(const PlaneFrame& plan) { return plane_gauge(plan, Vec3::Zero()).cast<double>(); }
+
 /// Covariance of (t, theta, log s) of what is held by a pose at p_W and has a size of its own about it: the inverse of pose_gauge().
 Wide7 held_by_pose(const Mat6& pose, const Vec3& p_W, Scalar sigma_scale) {
   Wide7 B = Wide7::Zero(), C = Wide7::Zero();
@@ -138,7 +142,7 @@ Similarity WallGauge::compare(MeasuredWall* walls, int count, Scalar gate) {
 }
 
 bool WallGauge::measure(int k, const PlaneFrame& plan, const Vec3& z, const Mat3& R, Scalar gate) {
-  const Wide37 G = plane_gauge(plan, z).cast<double>();
+  const Wide37 G = gauge_of(plan);
   Eigen::Map<const Eigen::Matrix<double, kMapRows, 1>> g(g_);
   const Eigen::Vector3d r = (z - wall_[k]).cast<double>() + G.lazyProduct(g);
   for (int i = 0; i < rows_; ++i)
@@ -216,7 +220,7 @@ Wide7 map_block(const double* P, int rows) {
 }  // namespace
 
 Mat3 WallGauge::relative_covariance(int k, const PlaneFrame& plan) const {
-  const Wide37 G = plane_gauge(plan, wall_[k]).cast<double>();
+  const Wide37 G = gauge_of(plan);
   Wide37 C_kg;
   for (int a = 0; a < 3; ++a)
     for (int j = 0; j < kMapRows; ++j) C_kg(a, j) = at(row_of(k) + a, j);

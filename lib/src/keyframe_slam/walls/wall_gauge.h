@@ -21,7 +21,7 @@ struct MeasuredWall {
 /// as plane_gauge() has them, and (a, b, h) of each wall about the frame of the plan are the state; the priors of the plan are independent
 /// of each other and of g. A wall that the map has measured at z in its own coordinates, with the covariance R, is one measurement of both:
 ///
-///   z = x_k - G g + v,   v ~ N(0, R),   G = plane_gauge(plan, z)
+///   z = x_k - G g + v,   v ~ N(0, R),   G = plane_gauge(plan, 0)
 ///
 /// The mean of g is zero: what an update makes of it is a Similarity by which the caller moves the map. In double in both libraries.
 class WallGauge {
