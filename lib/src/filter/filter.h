@@ -18,6 +18,8 @@
 
 namespace pf {
 
+class Archive;
+
 struct FilterCapacity {
   int state_dim;
   int features;
@@ -258,6 +260,8 @@ class Filter {
   bool body_is_sound() const;
   /// The same for a block and the anchor that it depends on.
   bool block_is_sound(int slot) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int take_slot(BlockKind kind);

@@ -21,6 +21,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeSlam {
  public:
   KeyframeSlam(const Settings& settings, Map& map)
@@ -60,6 +62,8 @@ class KeyframeSlam {
     Mat6 covariance = Mat6::Zero();
   };
   const Mark& mark() const { return data_.mark; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

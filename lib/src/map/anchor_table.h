@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A chain of places: a reference K holds the camera V from which the anchor was set, and V holds the anchor A. Covariances are of
 /// (theta, p) in W. What has no reference any more stays where it is in W.
 struct Anchor {
@@ -102,6 +104,8 @@ class AnchorTable {
 
   /// The lengths of a map become s times as large, about a place that stays, and it goes on under another id or the same one.
   void scale(std::uint32_t map_id, std::uint32_t new_map_id, Scalar s, const Vec3& pivot_W);
+
+  void carry(Archive& archive, int slots);  ///< base/archive.h; slots: of blocks
 
  private:
   Anchor* anchor_ = nullptr;

@@ -15,7 +15,6 @@
 
 namespace pf {
 
-constexpr std::uint32_t kPortableMap = 1;           ///< PF_MAP_PORTABLE
 constexpr std::uint32_t kMaxSavedId = 0x7fffffffu;  ///< of features, planes and places
 
 /// A plane that lies in its frame.

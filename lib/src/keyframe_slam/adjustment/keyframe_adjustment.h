@@ -12,6 +12,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeAdjustment {
  public:
   KeyframeAdjustment(const Settings& settings, KeyframeMap& map, KeyframePlanes& planes, const NoiseModel& noise)
@@ -36,6 +38,8 @@ class KeyframeAdjustment {
     map_covariance_.rightCols<3>() *= s;
   }
   HeldTarget& target() { return target_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Scalar sigma_px() const;

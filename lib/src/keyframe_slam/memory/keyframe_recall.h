@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeRecall {
  public:
   KeyframeRecall(const Settings& settings, const KeyframeMap& map) : settings_(settings), map_(map) {}
@@ -22,6 +24,8 @@ class KeyframeRecall {
   void describe_image(const Tracker& tracker) { recall_.describe_image(tracker); }
   /// Whether the described image looks like another part of the map. view: its pose. median_depth: of what it sees.
   bool is_alike(const CameraView& view, Scalar median_depth);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int sources() const;

@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Beside its row in the plane table, with the same number. The plane lies in its frame.
 struct KeyframePlane {
   PlaneFrame frame;
@@ -40,6 +42,8 @@ class KeyframePlanes {
   /// Takes what an adjustment says of a plane: (a, b, h) about its frame, and their covariance. The plane gets a frame that it lies in.
   /// False where it has turned too far to be the same plane; nothing changes.
   bool take_adjusted(int k, const Vec3& x, const Mat3& covariance);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int drop_distant_points(int k);
