@@ -618,7 +618,7 @@ typedef enum pf_map_kind {
    * (lib/docs/theory/map_format.md). */
   PF_MAP_PORTABLE = 1,
   /* The context as it stands between two frames, to go on with the very next one: the bits that
-   * follow are those of a run that was never saved. For the same build, config, scalar and kernels */
+   * follow are those of a run that was never saved. For the same build, config and kernel set */
   PF_MAP_CONTINUE = 2
 } pf_map_kind_t;
 

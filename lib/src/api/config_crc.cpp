@@ -1,7 +1,7 @@
 #include <cstddef>
 
 #include "api/context.h"
-#include "memory/crc32c.h"
+#include "session/live_map.h"
 
 namespace pf {
 namespace {
@@ -45,7 +45,7 @@ static_assert(are_all());
 std::uint32_t config_crc(const pf_config_t& config) {
   std::uint32_t crc = 0;
   for (const Span& span : kSpans)
-    crc = crc32c(reinterpret_cast<const std::uint8_t*>(&config) + span.begin, span.end - span.begin, crc);
+    crc = add_to_crc(crc, reinterpret_cast<const char*>(&config) + span.begin, span.end - span.begin);
   return crc;
 }
 

@@ -1,6 +1,7 @@
 #include "session/live_map.h"
 
 #include "base/archive.h"
+#include "memory/crc32c.h"
 #include "session/session.h"
 
 namespace pf {
@@ -21,6 +22,10 @@ const char* check_origin(const LiveOrigin& origin, const MapSection& section) {
 }
 
 }  // namespace
+
+std::uint32_t add_to_crc(std::uint32_t before, const void* bytes, std::size_t count) {
+  return crc32c(static_cast<const std::uint8_t*>(bytes), count, before);
+}
 
 Status write_live(const LiveOrigin& origin, Session& session, MapWriter* out) {
   Archive counting;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/status.h"
@@ -19,6 +20,9 @@ struct LiveOrigin {
   std::uint32_t config = 0;   ///< CRC-32C of what it says
   std::uint64_t block = 0;    ///< bytes of a context, by which builds differ
 };
+
+/// CRC-32C of more bytes of what a config says.
+std::uint32_t add_to_crc(std::uint32_t before, const void* bytes, std::size_t count);
 
 /// kState: a number of the session is not in its domain.
 Status write_live(const LiveOrigin& origin, Session& session, MapWriter* out);

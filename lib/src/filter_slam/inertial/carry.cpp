@@ -123,11 +123,10 @@ void UnitEvidence::carry(Archive& archive) {
 
 void UnitWatch::carry(Archive& archive) {
   if (parts_ == nullptr) return;
-  Parts& parts = *parts_;
-  parts.evidence.carry(archive);
-  parts.rates.carry(archive);
+  parts_->evidence.carry(archive);
+  parts_->rates.carry(archive);
   auto& [mode, rejected_ns, prior, prior_ns, follows, is_contradicted, is_taken_back, tracked, tracked_ns, is_aligned] =
-      parts.data;
+      parts_->data;
   archive.within(mode, 0, static_cast<int>(UnitMode::kRejected));
   archive.within(rejected_ns, 0, INT64_MAX / 2);
   archive.any(prior_ns, tracked_ns);

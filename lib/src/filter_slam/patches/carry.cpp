@@ -1,4 +1,4 @@
-#include "frame/carry.h"
+#include "frame/kept/carry.h"
 
 #include "filter_slam/patches/patch_keeper.h"
 

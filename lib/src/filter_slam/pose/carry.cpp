@@ -1,4 +1,4 @@
-#include "frame/carry.h"
+#include "frame/kept/carry.h"
 
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/proposed_poses.h"

@@ -1,4 +1,4 @@
-#include "frame/carry.h"
+#include "frame/kept/carry.h"
 
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 #include "keyframe_slam/tracking/relocaliser.h"

@@ -1,4 +1,4 @@
-#include "frame/carry.h"
+#include "frame/kept/carry.h"
 
 #include "frame/fit_warnings.h"
 #include "frame/fixed_features.h"
