@@ -26,7 +26,7 @@ void PlaceTable::carry(Archive& archive) {
   archive.counts(returned_);
   for (int i = 0; i < capacity_; ++i) {
     auto& [id, is_back, count, depth, q_WK, p_WK, covariance, point] = place_[i];
-    archive.any(id);
+    archive.within(id, 0, INT32_MAX);
     if (id == 0) continue;
     archive.flags(is_back);
     archive.within(count, 0, KeptPlace::kMaxPoints);

@@ -40,6 +40,8 @@ void KeyframeMap::carry(Archive& archive) {
   lens_.carry(archive);
   keyframes.carry(archive, features);
   places.carry(archive);
+  for (const int p : used_entries(places))  // as a keyframe again each could leave
+    archive.require(static_cast<int>(places[p].id) <= keyframes.numbered());
   for (const int i : used_entries(features)) {
     auto& [host, ray_K, rho, variance, has_depth, faces_host, plane, remembered, pixel, seen_from] = point_[i];
     archive.within(host, 0, keyframes.capacity() - 1);
