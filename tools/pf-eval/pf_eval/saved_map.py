@@ -272,7 +272,7 @@ def main(words):
         summary = summary_of(saved)
         if options.ply and saved.get("kind") == "continue":
             raise Refused(f"{options.file}: it is to go on with, and tells no places; save a portable map for --ply")
-        for path, text in ((options.ply, to_ply(saved)), (options.json, json.dumps(summary, indent=2) + "\n")):
+        for path, text in ((options.ply, to_ply(saved) if options.ply else ""), (options.json, json.dumps(summary, indent=2) + "\n")):
             if path == "-":
                 sys.stdout.write(text)
             elif path:
