@@ -638,8 +638,9 @@ PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer
 /* Begins in a saved map: W, lengths and planes are those of the map, and the camera is lost in it
  * until pf_push_frame recognises one of its places; the log has a line with the first tracked
  * frame. Before the first frame only. The map may come from another config, build, scalar or camera
- * of about the same focal length in pixels. The lens is that of the config. The map is searched for
- * until it is found, also after later losses: no new one begins before pf_reset, which drops it.
+ * of about the same focal length in pixels. The lens is that of the config or, where that is
+ * estimated and the map's is within three of its sigmas, the map's. The map is searched for until
+ * it is found, also after later losses: no new one begins before pf_reset, which drops it.
  * The buffer is read during the call only. All of it is checked first: where it is rejected nothing
  * changes, and the log has the reason. PF_ERROR_MAP: no map, damaged, of another version, or with a
  * number out of its domain. PF_ERROR_FULL: more places, planes or anchors than
