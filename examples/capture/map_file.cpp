@@ -13,7 +13,7 @@ namespace pf::capture {
 
 namespace {
 
-constexpr size_t kMaxBytes = size_t{1} << 24;  ///< of a file that is worth reading: the largest map has 4 MB
+constexpr size_t kMaxBytes = size_t{1} << 26;  ///< of a file that is worth reading: the largest context has 50 MB
 
 /// The whole file. false: errno says why, and is EFBIG where it is no map by its size alone.
 bool read_whole(const std::string& path, std::string& bytes) {
@@ -66,12 +66,13 @@ bool MapFile::load(pf_slam_t* slam, const std::vector<std::string>& log, std::st
   return status >= PF_OK;
 }
 
-bool MapFile::save(const pf_slam_t* slam, const std::string& path, std::string& note, std::string& error) {
+bool MapFile::save(const pf_slam_t* slam, int32_t kind, const std::string& path, std::string& note,
+                   std::string& error) {
   size_t bytes = 0;
-  pf_status_t status = pf_map_size(slam, PF_MAP_PORTABLE, &bytes);
+  pf_status_t status = pf_map_size(slam, kind, &bytes);
   std::string map(bytes, '\0');
   if (status == PF_OK) {
-    status = pf_save_map(slam, PF_MAP_PORTABLE, map.data(), map.size(), &bytes);
+    status = pf_save_map(slam, kind, map.data(), map.size(), &bytes);
   }
   if (status != PF_OK) {
     error = path + ": no map was saved: " +

@@ -16,9 +16,9 @@ class MapFile {
   /// Puts it into a context that has no frames yet. log: what the library has said, of which the last line is the reason where it is
   /// refused. false: error is one line.
   bool load(pf_slam_t* slam, const std::vector<std::string>& log, std::string& error) const;
-  /// Saves the map of a context: written beside the file, synced and renamed, so that the file is always the old map or the new one. note:
-  /// a line for the user. false: there is no new file, and error is one line.
-  static bool save(const pf_slam_t* slam, const std::string& path, std::string& note, std::string& error);
+  /// Saves the map of a context, of this pf_map_kind_t: written beside the file, synced and renamed, so that the file is always the old map
+  /// or the new one. note: a line for the user. false: there is no new file, and error is one line.
+  static bool save(const pf_slam_t* slam, int32_t kind, const std::string& path, std::string& note, std::string& error);
 
   bool empty() const { return path_.empty(); }
 

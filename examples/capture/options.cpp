@@ -343,8 +343,14 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is "
                  "the scale")
       ->check(not_empty());
-  app.add_option("--map", options.map, "file of a saved map, in which the run begins lost")->check(not_empty());
+  app.add_option("--map", options.map,
+                 "file of a saved map, in which the run begins lost, or with which it goes on as if it had not ended")
+      ->check(not_empty());
   app.add_option("--save-map", options.save_map, "file for the map at the end, for --map")->check(not_empty());
+  app.add_option("--map-kind", options.map_kind,
+                 "of --save-map: portable, or continue, with which a run of the same options goes on at the next frame")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, int32_t>{{"portable", PF_MAP_PORTABLE}, {"continue", PF_MAP_CONTINUE}}));
   app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)")
       ->check(not_empty());
   app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")

@@ -26,8 +26,9 @@ struct Options {
   double fov_deg = 0.0;  ///< horizontal, of a source that is tracked without its calibration; 0: not given
   std::optional<pf_camera_t> guess;  ///< in place of a calibration, once the size of the images is known
   std::string start = "auto";
-  std::string second_pose;    ///< file of a second known pose; "": none
-  std::string walls;          ///< file of a plan; "": none
+  std::string second_pose;             ///< file of a second known pose; "": none
+  std::string walls;                   ///< file of a plan; "": none
+  int32_t map_kind = PF_MAP_PORTABLE;  ///< pf_map_kind_t of save_map
   std::string map, save_map;  ///< files of the map that the run begins in, and of the one that it leaves; "": none
   int patches = -1;           ///< of walls that are followed; negative: none beside points, kPatchesAlone without
   bool points = true;         ///< false: patches of walls alone

@@ -517,7 +517,8 @@ int Run::finish() {
   tell_focal();
   std::fflush(stdout);
   std::string saved;
-  if (!options_.save_map.empty() && !MapFile::save(session_.slam(), options_.save_map, saved, error)) {
+  if (!options_.save_map.empty() &&
+      !MapFile::save(session_.slam(), options_.map_kind, options_.save_map, saved, error)) {
     return fail(error);
   }
   note(saved);

@@ -229,10 +229,10 @@ bool Session::is_metric() const {
 }
 
 bool Session::begin(std::string& error) {
-  if (!mask_.set(slam_, start_note_, error)) {
+  if (!map_file_.load(slam_, log_.lines, error)) {  // a context that goes on has been told nothing before
     return false;
   }
-  if (!map_file_.load(slam_, log_.lines, error)) {
+  if (!mask_.set(slam_, start_note_, error)) {
     return false;
   }
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {

@@ -1,7 +1,10 @@
 """A class has one job: limits of its size, and of that of functions, in the rooms of the back ends.
 
-Plain records count as classes: what many fields are handed to sees all of them. What stands above a limit is listed with its reason. A
+Plain records count as classes: what many fields are handed to sees all of them. carry(Archive&), which every class has that keeps something
+between frames, and the carry.cpp of its room do not count: they are no job of the class, and to leave them out would be no merit. What stands above a limit is listed with its reason. A
 number in the list may only fall: the test asks for the lower one as soon as there is one."""
+
+import pathlib
 
 import classes
 import source
@@ -28,9 +31,9 @@ def count(name, what, number, most, file, line):
 
 read, functions = classes.read(*(f"lib/src/{room}" for room in ROOMS))
 for one in read:
-    count(one.name, "methods", len(one.methods), MAX_METHODS, one.file, one.line)
+    count(one.name, "methods", sum(not method.startswith("void carry(Archive&") for method in one.methods), MAX_METHODS, one.file, one.line)
     count(one.name, "data members", len(one.members), MAX_MEMBERS, one.file, one.line)
-    count(one.name, ".cpp files", len(one.sources), MAX_SOURCES, one.file, one.line)
+    count(one.name, ".cpp files", sum(pathlib.Path(source_file).name != "carry.cpp" for source_file in one.sources), MAX_SOURCES, one.file, one.line)
 for function in functions:
     count(function.name, "lines", function.lines, MAX_LINES, function.file, function.line)
 

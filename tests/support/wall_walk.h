@@ -88,6 +88,8 @@ class WallWalk {
     return all;
   }
 
+  const pf_config_t& config() const { return config_; }
+
   pf_slam_t* slam = nullptr;
   pf_pose_t pose;
   double error_m = 0;  ///< of the last frame's position

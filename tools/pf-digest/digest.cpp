@@ -3,6 +3,9 @@
 //
 // One line a frame: the frames since create or reset, then one hash per kind of value. Values are hashed as numbers in the
 // order of this file and not as structures, so that names and layouts may change. The file is appended to in whole lines.
+//
+// With PLANEFOLD_DIGEST_CONTINUE=N each Nth frame is followed by a save of the context (PF_MAP_CONTINUE), which goes on in a block that
+// holds nothing else: the digests must be those of a run without.
 
 #include <fcntl.h>
 #include <planefold/planefold_research.h>
@@ -198,9 +201,39 @@ void add_lens(Hash& h, const pf_slam_t* slam) {
   h << camera.fx << camera.fy << camera.cx << camera.cy << camera.distortion << camera.readout_s << covariance;
 }
 
-std::map<const pf_slam_t*, pf_camera_t>& cameras() {
-  static std::map<const pf_slam_t*, pf_camera_t> all;
+/// What a context was created with.
+struct Created {
+  pf_config_t config;
+  void* block;
+  std::size_t bytes;
+  std::int64_t frames = 0;  ///< since then
+};
+
+std::map<const pf_slam_t*, Created>& contexts() {
+  static std::map<const pf_slam_t*, Created> all;
   return all;
+}
+
+[[noreturn]] void stop(const char* what, pf_status_t status) {
+  std::fprintf(stderr, "pf-digest: %s: %s\n", what, pf_status_text(status));
+  std::_Exit(1);
+}
+
+/// The context goes on from its bytes alone: whatever else its block held is overwritten.
+void continue_anew(pf_slam_t* slam) {
+  static const char* const every = std::getenv("PLANEFOLD_DIGEST_CONTINUE");
+  Created& created = contexts()[slam];
+  if (every == nullptr || ++created.frames % std::atoll(every) != 0) return;
+  std::size_t bytes = 0, used = 0;
+  pf_status_t status = pf_map_size(slam, PF_MAP_CONTINUE, &bytes);
+  std::vector<std::uint8_t> saved(bytes);
+  if (status == PF_OK) status = pf_save_map(slam, PF_MAP_CONTINUE, saved.data(), saved.size(), &used);
+  if (status != PF_OK) stop("saving", status);
+  std::memset(created.block, 0xa5, created.bytes);
+  pf_slam_t* same = nullptr;
+  status = __real_pf_create(&created.config, created.block, created.bytes, &same);
+  if (status == PF_OK && same == slam) status = pf_load_map(slam, saved.data(), used);
+  if (status != PF_OK) stop("going on", status);
 }
 
 /// A file that is appended to; each process opens it anew. Without a name nothing is written.
@@ -246,7 +279,7 @@ void write_digest(const pf_slam_t* slam, pf_status_t pushed) {
   add_all(h[kFeatures], slam, pf_get_features);
   add_all(h[kPlanes], slam, pf_get_planes);
   add_all(h[kMatches], slam, pf_get_matches);
-  add_hits(h[kHits], slam, cameras()[slam]);
+  add_hits(h[kHits], slam, contexts()[slam].config.camera);
   pf_imu_report_t imu{};
   h[kImu] << pf_get_imu_report(slam, &imu);
   add(h[kImu], imu);
@@ -286,13 +319,14 @@ void write_digest(const pf_slam_t* slam, pf_status_t pushed) {
 
 pf_status_t __wrap_pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam) {
   const pf_status_t status = __real_pf_create(config, block, bytes, slam);
-  if (status >= 0) cameras()[*slam] = config->camera;
+  if (status >= 0) contexts()[*slam] = {*config, block, bytes};
   return status;
 }
 
 pf_status_t __wrap_pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
   const pf_status_t status = __real_pf_push_frame(slam, image);
   write_digest(slam, status);
+  continue_anew(slam);
   return status;
 }
 
@@ -300,5 +334,6 @@ pf_status_t __wrap_pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_
                                         size_t count) {
   const pf_status_t status = __real_pf_push_observations(slam, t_ns, observations, count);
   write_digest(slam, status);
+  continue_anew(slam);
   return status;
 }

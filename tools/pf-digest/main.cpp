@@ -26,6 +26,7 @@ int fail(const std::string& what) {
 struct Options {
   std::int64_t frames = INT64_MAX;
   std::int64_t black_from = INT64_MAX, black_frames = 0;
+  int places = -1;
   bool start_auto = false, window = false, masks = false, imu = false, lens = false;
   pf::tools::CalibrationOptions calibration;  ///< of a sequence
 };
@@ -35,6 +36,7 @@ pf_config_t config_for(const pf_camera_t& camera, const Options& options) {
   pf_config_default(&config);
   config.camera = camera;
   config.capacity.max_imu_samples = 100;
+  config.capacity.max_places = options.places;
   if (options.window) config.backend = PF_BACKEND_WINDOW;
   if (options.masks) config.map.masks = PF_MASKS_PARTIAL;
   if (options.lens) {
@@ -170,6 +172,7 @@ int main(int argc, char** argv) {
   app.add_option("--backend", backend, "filter or window")->check(CLI::IsMember({"filter", "window"}));
   app.add_flag("--masks", options.masks, "templates with masks");
   app.add_flag("--imu", options.imu, "the inertial model: a scene's own unit, or the samples beside the images");
+  app.add_option("--places", options.places, "capacity.max_places");
   app.add_flag("--lens", options.lens, "the lens is estimated");
   app.add_option("--black-from", options.black_from, "the first frame with the lens covered");
   app.add_option("--black", options.black_frames, "and for how many frames");

@@ -620,7 +620,8 @@ typedef enum pf_map_kind {
   /* Places, planes, anchors, gravity and the lens, in a format that any build reads
    * (lib/docs/theory/map_format.md). */
   PF_MAP_PORTABLE = 1,
-  /* The context as it stands, to go on with the very next frame. Not in this release */
+  /* The context as it stands between two frames, to go on with the very next one: the bits that
+   * follow are those of a run that was never saved. For the same build, config and kernel set */
   PF_MAP_CONTINUE = 2
 } pf_map_kind_t;
 
@@ -631,21 +632,32 @@ PF_API pf_status_t pf_map_size(const pf_slam_t* slam, int32_t kind, size_t* byte
  * the map has, and what keyframes of the window or the filter's camera see; of more than
  * capacity.max_places the least redundant ones. PF_NOTE_NOTHING: none has enough points yet, and
  * nothing is written. PF_ERROR_STATE: without room for places, and while starting.
- * PF_ERROR_RANGE: the kind is unknown, or PF_MAP_CONTINUE. PF_ERROR_MEMORY: the buffer is too
- * small, and nothing was written. */
+ * PF_MAP_CONTINUE needs no places and can be saved at any time, also before the first frame, but
+ * not from a callback (PF_ERROR_STATE). PF_ERROR_RANGE: the kind is unknown. PF_ERROR_MEMORY: the
+ * buffer is too small, and nothing was written. */
 PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer, size_t bytes,
                                size_t* used);
 
 /* Begins in a saved map: W, lengths and planes are those of the map, and the camera is lost in it
  * until pf_push_frame recognises one of its places; the log has a line with the first tracked
  * frame. Before the first frame only. The map may come from another config, build, scalar or camera
- * of about the same focal length in pixels. The lens is that of the config. The map is searched for
- * until it is found, also after later losses: no new one begins before pf_reset, which drops it.
+ * of about the same focal length in pixels. The lens is that of the config or, where that is
+ * estimated and the map's is within three of its sigmas, the map's. The map is searched for until
+ * it is found, also after later losses: no new one begins before pf_reset, which drops it.
  * The buffer is read during the call only. All of it is checked first: where it is rejected nothing
  * changes, and the log has the reason. PF_ERROR_MAP: no map, damaged, of another version, or with a
  * number out of its domain. PF_ERROR_FULL: more places, planes or anchors than
  * capacity.max_places, max_planes and max_anchors. PF_ERROR_STATE: after the first frame, with a
- * start that was set or a wall, or without room for places (capacity.max_places). */
+ * start that was set or a wall, or without room for places (capacity.max_places).
+ *
+ * With PF_MAP_CONTINUE goes on where the saved context was, at any address, with the next frame,
+ * whose time is after the last one's. Masks, walls, anchors, marks, gravity and samples come back;
+ * the callbacks are those of this context. PF_ERROR_STATE: anything was told to the context since
+ * pf_create or pf_reset. PF_ERROR_MAP: another release, build, scalar, kernel set or config (all
+ * fields but kernels and callbacks), and the log names which; or damaged. The CRC is no
+ * authentication: of a forged file too every count, index and enum is checked, so that it reaches
+ * no memory outside of the block, but its numbers are believed: poses and maps are then as wrong as
+ * they are. */
 PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
 
 /* -------------------------------------------------------------------------------- output -- */

@@ -25,7 +25,7 @@ pf_status_t add(pf_slam_t* slam, const pf::AnchorRequest& asked, uint32_t* id) {
 }  // namespace
 
 pf_status_t pf_add_anchor_pose(pf_slam_t* slam, const pf_pose_t* pose, uint32_t* id) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (pose == nullptr || id == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(pose->q_WC, 4) || !pf::finite(pose->p_WC, 3)) return PF_ERROR_NONFINITE;
   pf::AnchorRequest asked;
@@ -36,7 +36,7 @@ pf_status_t pf_add_anchor_pose(pf_slam_t* slam, const pf_pose_t* pose, uint32_t*
 }
 
 pf_status_t pf_add_anchor_hit(pf_slam_t* slam, const pf_hit_t* hit, uint32_t* id) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (hit == nullptr || id == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(hit->p_W, 3)) return PF_ERROR_NONFINITE;
   if (!pf::within(hit->p_W, 3, pf::kMaxMetres)) return PF_ERROR_RANGE;
@@ -48,7 +48,7 @@ pf_status_t pf_add_anchor_hit(pf_slam_t* slam, const pf_hit_t* hit, uint32_t* id
 }
 
 pf_status_t pf_remove_anchor(pf_slam_t* slam, uint32_t id) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   return pf::to_c(slam->session.map_calls().remove_anchor(id));
 }
 

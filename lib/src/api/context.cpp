@@ -4,10 +4,8 @@
 
 #include "api/stack_budget.h"
 
-namespace {
-
 /// Layout of a context: over an empty arena to count the bytes, over the caller's block to place the parts.
-std::size_t bytes_needed(const pf::Settings& settings) {
+std::size_t pf::bytes_needed(const pf::Settings& settings) {
   pf::Arena arena;
   arena.take<pf_slam>(1);
   pf::Session session;
@@ -15,14 +13,12 @@ std::size_t bytes_needed(const pf::Settings& settings) {
   return arena.used();
 }
 
-}  // namespace
-
 pf_status_t pf_memory_query(const pf_config_t* config, pf_memory_t* memory) {
   if (config == nullptr || memory == nullptr) return PF_ERROR_NULL;
   pf::Settings settings;
   const pf::Status status = pf::settings_from(*config, &settings, nullptr);
   if (status != pf::Status::kOk) return pf::to_c(status);
-  memory->bytes = bytes_needed(settings);
+  memory->bytes = pf::bytes_needed(settings);
   memory->alignment = pf::Arena::kAlignment;
   memory->stack_bytes = pf::kStackBudget;
   return PF_OK;
@@ -37,7 +33,7 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
   const pf::Status status = pf::settings_from(copy, &settings, nullptr);
   if (status != pf::Status::kOk) return pf::to_c(status);
   if (reinterpret_cast<std::uintptr_t>(block) % pf::Arena::kAlignment != 0) return PF_ERROR_ALIGNMENT;
-  if (bytes < bytes_needed(settings)) return PF_ERROR_MEMORY;
+  if (bytes < pf::bytes_needed(settings)) return PF_ERROR_MEMORY;
   pf::Arena arena(block, bytes);
   pf_slam* context = new (arena.take<pf_slam>(1)) pf_slam();
   context->session.layout(arena, settings);
@@ -51,6 +47,7 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
 pf_status_t pf_reset(pf_slam_t* slam) {
   PF_REQUIRE_IDLE(slam);
   slam->session.init();
+  slam->is_told = false;
   return PF_OK;
 }
 

@@ -12,6 +12,7 @@ struct pf_slam {
   pf_slam* self;  ///< own address, by which a block that was copied or moved is detected
   pf_config_t config;
   pf::Session session;
+  bool is_told;  ///< something has changed it since pf_create or pf_reset
   bool in_call;  ///< a frame is being processed: calls from its callbacks that change the context are rejected
 };
 
@@ -24,6 +25,11 @@ inline bool is_context(const pf_slam_t* slam) {
 }
 
 inline pf_status_t to_c(Status status) { return static_cast<pf_status_t>(status); }
+
+std::size_t bytes_needed(const Settings& settings);
+
+/// CRC-32C of all that a config says, but for kernels and callbacks.
+std::uint32_t config_crc(const pf_config_t& config);
 
 Status settings_from(const pf_config_t& config, Settings* settings, const char** field);
 
@@ -49,6 +55,11 @@ class InCall {
   } while (false)
 
 /// The same for a call that changes the context: also rejected from inside a callback of the same context.
+#define PF_REQUIRE_CHANGEABLE(slam) \
+  PF_REQUIRE_IDLE(slam);            \
+  (slam)->is_told = true
+
+/// The same for one that makes it new.
 #define PF_REQUIRE_IDLE(slam)                   \
   PF_REQUIRE_CONTEXT(slam);                     \
   do {                                          \

@@ -22,7 +22,7 @@ void copy_rotation(const pf::Quat& q, double* out) {
 }  // namespace
 
 pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (samples == nullptr && count > 0) return PF_ERROR_NULL;
   const pf::ImuLog& imu = slam->session.imu();
   for (size_t i = 0; i < count; ++i) {

@@ -41,7 +41,7 @@ pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
 }  // namespace
 
 pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (target == nullptr) return PF_ERROR_NULL;
   if (slam->session.view().used()) return PF_ERROR_STATE;
   if (!pf::finite(&target->sigma, 1)) return PF_ERROR_NONFINITE;
@@ -79,7 +79,7 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
 }
 
 pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
   if (slam->session.view().used()) return PF_ERROR_STATE;
   pf::KnownBody known;
@@ -103,7 +103,7 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
 }
 
 pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* pose) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
   pf::Body body;
   const pf_status_t status = body_from(*pose, &body);
@@ -114,18 +114,18 @@ pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* p
 }
 
 pf_status_t pf_withdraw_target(pf_slam_t* slam) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   slam->session.withdraw_target();
   return PF_OK;
 }
 
 pf_status_t pf_mark_pose(pf_slam_t* slam) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   return pf::to_c(slam->session.mark_pose());
 }
 
 pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
   if (!within(dv_C, 3, kMaxMetres) || !within(dw_C, 3, kMaxRate)) return PF_ERROR_RANGE;
@@ -135,7 +135,7 @@ pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double 
 }
 
 pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (image == nullptr || image->pixels == nullptr) return PF_ERROR_NULL;
   if (!slam->session.takes_images()) return PF_ERROR_STATE;
   const pf_camera_t& camera = slam->config.camera;
@@ -147,7 +147,7 @@ pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
 }
 
 pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations, size_t count) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (observations == nullptr && count > 0) return PF_ERROR_NULL;
   if (!slam->session.takes_observations()) return PF_ERROR_STATE;
   if (!pf::is_next_frame(slam->session.view().frame(), t_ns)) return PF_ERROR_TIME;

@@ -57,7 +57,7 @@ pf_status_t check(const pf_mask_t& mask, const pf_camera_t& camera) {
 }  // namespace
 
 pf_status_t pf_set_mask(pf_slam_t* slam, const pf_mask_t* mask) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (mask == nullptr) return PF_ERROR_NULL;
   ImageMask* const kept = slam->session.settings().mask.mask;
   if (kept == nullptr) return PF_ERROR_FULL;

@@ -72,7 +72,7 @@ pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_
 }
 
 pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (gravity_W == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(gravity_W, 3)) return PF_ERROR_NONFINITE;
   for (int i = 0; i < 3; ++i)
@@ -83,7 +83,7 @@ pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]) {
 }
 
 pf_status_t pf_set_plane_vertical(pf_slam_t* slam, uint32_t plane, double sigma_rad) {
-  PF_REQUIRE_IDLE(slam);
+  PF_REQUIRE_CHANGEABLE(slam);
   if (!pf::finite(&sigma_rad, 1)) return PF_ERROR_NONFINITE;
   constexpr double kMinSigma = 1e-6, kMaxSigma = 0.5;
   if (sigma_rad != 0 && !(sigma_rad >= kMinSigma && sigma_rad <= kMaxSigma)) return PF_ERROR_RANGE;

@@ -7,6 +7,8 @@ namespace pf {
 /// A count in two bytes, which stays at its largest value when it gets there.
 class SmallCount {
  public:
+  static constexpr int kMax = 65535;
+
   SmallCount() = default;
   SmallCount(int n) : n_(static_cast<std::uint16_t>(n < 0 ? 0 : n > kMax ? kMax : n)) {}
   operator int() const { return n_; }
@@ -16,7 +18,6 @@ class SmallCount {
   }
 
  private:
-  static constexpr int kMax = 65535;
   std::uint16_t n_ = 0;
 };
 

@@ -4,6 +4,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// How many views of the map look like another part of it: the probability that a place which agrees with an image is another one than the
 /// camera's. At least one in a thousand, since a part that was never seen may be the one:
 ///
@@ -17,6 +19,8 @@ class AlikeShare {
   void note(bool is_alike);
   /// ln s
   Scalar log_share() const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Scalar views_ = 0, alike_ = 0;

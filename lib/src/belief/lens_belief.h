@@ -6,6 +6,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Evidence of one image: ln of the ratio of two likelihoods of its log ratio s of focal lengths (ZoomFit, with variance v), of a lens that
 /// has changed and of the calibrated one. A calibration is right within kKept, and changes have sizes up to about kChange:
 ///
@@ -28,6 +30,8 @@ class LensBelief {
   Scalar log_odds() const { return log_odds_; }
   /// ln of the focal length over the calibrated one, by the last noted image.
   Scalar log_ratio() const { return log_ratio_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Scalar before_, log_odds_;

@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A running log-odds L = ln(p / (1 - p)) that the pose is that of the camera in the map (lib/docs/theory/belief.md):
 ///
 ///   predicted   p <- p exp(-kHazard dt),  and no less than kAnew: where the camera should be may be right at any time
@@ -58,6 +60,8 @@ class PoseBelief {
   static bool is_settled(Scalar log_odds);
   /// The frame's pose is accepted: its log-odds reach kTracked.
   bool is_tracked() const { return is_enough(log_odds()); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   FindShare share_;

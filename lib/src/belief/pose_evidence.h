@@ -7,6 +7,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// What the searches of a frame have found, and how much of it agrees with one pose.
 struct PoseConsensus {
   int searched = 0;          ///< features
@@ -38,6 +40,8 @@ class FindShare {
   Scalar log_probability(int searched, int inliers) const;
   /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
   Scalar in_frame(int searched, int inliers) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Scalar mean_ = 0;

@@ -12,6 +12,8 @@
 
 namespace pf {
 
+class Archive;
+
 enum class StartOutcome {
   kWait,     ///< not enough parallax (more than last time), or more than one solution
   kSolved,   ///< solved; more frames may improve it
@@ -48,6 +50,8 @@ class StartBundle {
 
   Scalar rho(int feature) const { return rho_[feature]; }
   bool good(int feature) const { return last_rho_[feature] > Scalar(0); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxCameras = 8;  ///< of the adjustment

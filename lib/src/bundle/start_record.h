@@ -7,6 +7,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every
 /// second frame is dropped, so that a resting camera does not fill it.
 class StartRecord {
@@ -40,6 +42,8 @@ class StartRecord {
   const BundlePixel* pixels(int k) const { return pixel_ + k * kMaxFeatures; }  ///< by feature
   bool seen(int k, int i) const { return pixels(k)[i].seen; }
   Vec2 pixel(int k, int i) const { return pixels(k)[i].pixel(); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity

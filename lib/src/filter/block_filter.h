@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Rows from `begin` to before `end`.
 struct RowRange {
   int begin = 0, end = 0;
@@ -184,6 +186,9 @@ class BlockFilter {
   Scalar rounding_of(const Rows& J, int r) const;
   /// Columns of the state that rows touch, in their order. Returns how many.
   int columns(const Rows& J, int* column) const;
+
+  /// base/archive.h. The blocks are those of a state that has been carried.
+  void carry(Archive& archive, const struct State& state);
 
  private:
   struct Located;  ///< rows as the kernels read them

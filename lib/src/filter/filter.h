@@ -258,7 +258,7 @@ class Filter {
   bool body_is_sound() const;
   /// The same for a block and the anchor that it depends on.
   bool block_is_sound(int slot) const;
-
+  void carry(Archive& archive);  ///< base/archive.h
  private:
   int take_slot(BlockKind kind);
   const Measurement* views_of(const PixelMeasurement* z, int count);

@@ -5,6 +5,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Covariance of gauge directions that is kept apart from P (lib/docs/theory/float.md):
 ///
 ///   covariance of the state = P + N V N^T     N(x): gauge rows of the state (model/gauge.h); V: 7x7, translation, rotation, log scale
@@ -36,6 +38,8 @@ class GaugePrior {
     const Eigen::Matrix<Scalar, kRows, gauge::kDirections> JNV = JN.lazyProduct(V_);
     return JNV.lazyProduct(JN.transpose());
   }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// J N, column-major.

@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 struct ImuSample {
   std::int64_t t_ns;
   Scalar gyro[3];   ///< angular velocity in the axes of the unit [rad/s]
@@ -47,6 +49,8 @@ class ImuLog {
   int held() const { return held_; }
   /// 0: the oldest sample that is held.
   const ImuSample& operator[](int i) const { return ring_[(begin_ + i) % capacity_]; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void time_interval(std::int64_t interval_ns);

@@ -26,6 +26,8 @@
 
 namespace pf {
 
+class Archive;
+
 class FilterSlam {
  public:
   FilterSlam(const Settings& settings, Map& map, const ImuLog& imu)
@@ -68,6 +70,8 @@ class FilterSlam {
   const ImageTracking& images() const { return images_; }
   const MapUpkeep& upkeep() const { return upkeep_; }
   const UnitKeeper& unit() const { return unit_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames.

@@ -19,6 +19,8 @@
 
 namespace pf {
 
+class Archive;
+
 class ImageTracking {
  public:
   ImageTracking(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking,
@@ -50,6 +52,8 @@ class ImageTracking {
   Relocaliser& relocaliser() { return relocaliser_; }
   const Relocaliser& relocaliser() const { return relocaliser_; }
   const NoiseModel& noise() const { return noise_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   const Settings& settings_;

@@ -18,6 +18,8 @@
 
 namespace pf {
 
+class Archive;
+
 class MapUpkeep {
  public:
   MapUpkeep(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking)
@@ -64,6 +66,8 @@ class MapUpkeep {
   /// Null where the config has no room for patches.
   PatchKeeper* patches() { return patches_; }
   const PatchKeeper* patches() const { return patches_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   bool layout_patches(Arena& arena);

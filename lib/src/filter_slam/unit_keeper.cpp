@@ -8,8 +8,6 @@ namespace pf {
 
 namespace {
 
-constexpr const char* kSamplesBegin = "the inertial unit's clock and axes are found, and the new map uses its samples";
-
 constexpr double kPatience = 5;  ///< [s] of a map, after which waiting for a better scale costs more than it brings
 
 }  // namespace
@@ -36,7 +34,7 @@ void UnitKeeper::begin_map() {
   rest_.init();
   metric_.init();
   has_just_aligned_ = false;
-  why_discredited_ = "";
+  discredit_ = Discredit::kNone;
   if (parts_ == nullptr) return;
   parts_->hold.init();
   parts_->moving.init();
@@ -134,13 +132,13 @@ UnitReason UnitKeeper::reason(Scalar* value, Mat3* R_CB) const {
 }
 
 void UnitKeeper::let_samples_begin() {
-  if (has_just_aligned_ && start_.may_become_metric()) why_discredited_ = kSamplesBegin;
+  if (has_just_aligned_ && start_.may_become_metric()) discredit_ = Discredit::kSamplesBegin;
 }
 
 /// A map that began at rest, with a unit of unknown delay, has no scale from motion yet, so discarding it loses nothing.
 bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
-  if (why_discredited_ == kSamplesBegin) return true;
+  if (discredit_ == Discredit::kSamplesBegin) return true;
   const bool left_rest = watch_.mode() == UnitMode::kAtRest && !rest_.is_resting();
   if (left_rest) watch_.take(UnitEvent::kMotion);
   const bool doubted = watch_.note(follows && !holds(), tracking_.is_tracked(frame_.report), dt_ns);
@@ -149,10 +147,23 @@ bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
     if (left_rest) watch_.take(UnitEvent::kGoesOn);
     return false;
   }
-  why_discredited_ = left_rest ? "the camera leaves its rest before the inertial unit's clock and axes are known"
-                               : "its scale came from an inertial unit that is rejected";
+  discredit_ = left_rest ? Discredit::kLeftRest : Discredit::kRejected;
   watch_.take(UnitEvent::kNewMap);
   return true;
+}
+
+const char* UnitKeeper::why_discredited() const {
+  switch (discredit_) {
+    case Discredit::kSamplesBegin:
+      return "the inertial unit's clock and axes are found, and the new map uses its samples";
+    case Discredit::kLeftRest:
+      return "the camera leaves its rest before the inertial unit's clock and axes are known";
+    case Discredit::kRejected:
+      return "its scale came from an inertial unit that is rejected";
+    case Discredit::kNone:
+      break;
+  }
+  return "";
 }
 
 }  // namespace pf

@@ -24,6 +24,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// What a frame did to the map's scale.
 enum class ScaleChange : std::uint8_t {
   kNone,
@@ -73,7 +75,7 @@ class UnitKeeper {
   /// Time from which on a prediction from now_ns goes through samples.
   std::int64_t motion_begin_ns(std::int64_t now_ns) const;
   /// Reason of discredits_map, for the log.
-  const char* why_discredited() const { return why_discredited_; }
+  const char* why_discredited() const;
   const UnitWatch& watch() const { return watch_; }
   /// Why samples do not move the body, or why lengths are not metres. *value, *R_CB: the numbers that belong to the reason, where it has
   /// any.
@@ -85,6 +87,8 @@ class UnitKeeper {
   ImuNoise noise() const { return motion_.unit_noise().now(); }
   /// Present estimate of the unit's mounting on the camera.
   Mounting mounting() const { return start_.mounting().now(); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Parts {
@@ -111,7 +115,8 @@ class UnitKeeper {
   RestDetector rest_;
   UnitWatch watch_;
   MetricStart metric_;
-  const char* why_discredited_ = "";
+  enum class Discredit : std::uint8_t { kNone, kSamplesBegin, kLeftRest, kRejected };
+  Discredit discredit_ = Discredit::kNone;  ///< why discredits_map says so
   bool has_just_aligned_ = false;           ///< samples move the body from this frame on
   PartPointer<Parts, kHasInertial> parts_;  ///< with the inertial motion model, in the block
 };

@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Finds features that stand still in the image while the rest moves: the carrier's own body, a date that is written over the image. They
 /// are no part of the scene, and their surroundings are masked from then on (lib/docs/theory/belief.md).
 ///
@@ -35,6 +37,8 @@ class FixedFeatures {
 
   /// Mask of what is fixed, and of what the caller has masked.
   const ImageMask* mask() const { return &mask_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Entry {

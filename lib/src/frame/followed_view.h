@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A camera that rotates or stops faster than the motion model allows leaves the search ellipses, and searches about the prediction find
 /// nothing. The thumbnails of both images give the rotation between them, to a fraction of a thumbnail's pixel, as if the camera had only
 /// rotated.
@@ -30,6 +32,8 @@ class FollowedView {
   static Mat2 covariance(const Camera& camera);
   /// Whether the ellipse of a search is several times as large as that about such a pixel, so that aiming helps.
   static bool is_wide(const Camera& camera, const Mat2& innovation, Scalar gate);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -11,6 +11,9 @@
 
 namespace pf {
 
+class Archive;
+class FeatureTable;
+
 /// With the numbers of pf_match_status_t.
 enum class MatchStatus : std::uint8_t { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 };
 
@@ -123,6 +126,8 @@ class Frame {
     count_ = 0;
     report.attempts = report.matches = 0;
   }
+
+  void carry(Archive& archive, const FeatureTable& features);  ///< base/archive.h
 
  private:
   Match* match_ = nullptr;

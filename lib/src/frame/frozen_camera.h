@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 class FrozenCamera {
  public:
   void init() { data_ = Data(); }
@@ -22,6 +24,8 @@ class FrozenCamera {
   }
   /// Time since the repeated image came first.
   std::int64_t frozen_ns(std::int64_t t_ns) const { return elapsed_ns(data_.first_ns, t_ns); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 class TemplateMatcher;
 
 class ImageSearch {
@@ -36,6 +38,8 @@ class ImageSearch {
 
   bool has_templates() const { return templates_ != nullptr; }
   const Tracker& tracker() const { return tracker_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Tracker tracker_;

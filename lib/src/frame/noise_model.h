@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Two covariances of a match.
 ///
 ///   R_gate   = g^2 (sigma_px^2 l^2 I + F)    one match by itself: gate, consensus, NIS
@@ -53,6 +55,8 @@ class NoiseModel {
   void learn(int frame, const Vec2& residual, const Mat2& R_gate, Scalar leverage, ResidualTrace* trace);
   /// Updates g and tau with the residuals that learn() has gathered in this frame.
   void end_frame();
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Scalar sigma_px_ = 0;

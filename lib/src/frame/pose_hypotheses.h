@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A pose about which a frame is searched.
 struct PoseHypothesis {
   Quat q_WC = Quat::Identity();
@@ -60,6 +62,8 @@ class PoseHypotheses {
   /// Whether a pose of these log-odds may update the estimate: it has enough inliers, and its log-odds reach kTracked. is_last: all
   /// features of the frame have been searched for; otherwise no evidence of the remaining ones may take the log-odds below that bound.
   bool accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last = true);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   const Settings& settings_;

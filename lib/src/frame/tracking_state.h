@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// With the numbers of pf_state_t.
 enum class SlamState : int { kStarting = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
 
@@ -103,6 +105,8 @@ class TrackingState {
   /// Time of the last frame that supported its pose.
   std::int64_t last_tracked_ns() const { return data_.last_tracked_ns; }
   bool may_skip_target() const { return data_.may_skip_target; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   const Settings& settings_;

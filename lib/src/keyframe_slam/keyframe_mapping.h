@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeMapping {
  public:
   KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
@@ -52,6 +54,8 @@ class KeyframeMapping {
   const KeyframeAdjustment& adjustment() const { return adjustment_; }
   MapSaving& saving() { return saving_; }
   const MapSaving& saving() const { return saving_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void triangulate_inliers(bool young);

@@ -22,6 +22,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeSlam {
  public:
   KeyframeSlam(const Settings& settings, Map& map)
@@ -54,6 +56,8 @@ class KeyframeSlam {
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// The pose that the caller marked.
 struct MarkedPose {
   bool is_set = false;
@@ -70,6 +72,8 @@ class MapPlacement {
   Mat6 map_covariance(const Vec3& p_W) const;
   const KeyframeWalls& walls() const { return walls_; }
   const KeyframePlanes& planes() const { return planes_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void move(const Similarity& T, Scalar* median_depth);

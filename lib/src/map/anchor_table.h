@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A chain of places: a reference K holds the camera V from which the anchor was set, and V holds the anchor A. Covariances are of
 /// (theta, p) in W. What has no reference any more stays where it is in W.
 struct Anchor {
@@ -103,6 +105,8 @@ class AnchorTable {
 
   /// A map is moved, and goes on under another id or the same one.
   void move(std::uint32_t map_id, std::uint32_t new_map_id, const Similarity& T);
+
+  void carry(Archive& archive, int slots);  ///< base/archive.h; slots: of blocks
 
  private:
   Anchor* anchor_ = nullptr;

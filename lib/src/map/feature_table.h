@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Running mean of a feature's normalised residuals, for their correlation in time.
 struct ResidualTrace {
   float mean[2] = {0, 0};
@@ -98,6 +100,8 @@ class FeatureTable {
     }
     return worst;
   }
+
+  void carry(Archive& archive, int slots);  ///< base/archive.h; slots: of blocks
 
  private:
   /// Class of a feature by its measurements: 0 with fewer than kAgain, 1 with fewer than kProven, then one more for each doubling up to

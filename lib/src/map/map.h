@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// The pose that the caller marked.
 struct Mark {
   int camera = -1;        ///< slot of its reference camera, which it pins; -1: there is none
@@ -33,6 +35,7 @@ class Map {
     anchors.layout(arena, max_anchors);
     appearance_ = arena.take<Appearance>(static_cast<std::size_t>(max_features));
     first_view_ = arena.take<CameraView>(static_cast<std::size_t>(max_features));
+    template_side_ = template_px;
     mask_size_ = template_px * template_px;
     if (template_px > 0) {
       template_ = arena.take<PlanarTemplate>(static_cast<std::size_t>(max_features));
@@ -62,8 +65,10 @@ class Map {
   std::uint8_t* mask(int feature) { return mask_ + feature * mask_size_; }
   const std::uint8_t* mask(int feature) const { return mask_ + feature * mask_size_; }
 
+  void carry(Archive& archive, int slots);  ///< base/archive.h; slots: of blocks
+
  private:
-  int mask_size_ = 0;
+  int template_side_ = 0, mask_size_ = 0;
   Appearance* appearance_ = nullptr;    ///< of each row of the feature table
   CameraView* first_view_ = nullptr;    ///< the same
   PlanarTemplate* template_ = nullptr;  ///< the same; null without masks

@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A wall: a plane known beforehand, with how uncertain it is.
 struct PlanePrior {
   PlaneFrame frame;                ///< third axis towards the side that can be seen, origin at the wall's own centre
@@ -184,6 +186,8 @@ class PlaneTable {
     }
     return 0;
   }
+
+  void carry(Archive& archive, int slots);  ///< base/archive.h; slots: of blocks
 
  private:
   static constexpr int kMergesPerPlane = 4;  ///< merges, per plane of the capacity

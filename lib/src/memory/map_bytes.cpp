@@ -107,6 +107,13 @@ void MapReader::bytes(std::uint8_t* to, std::size_t count) {
   left_ -= count;
 }
 
+std::uint32_t map_kind(const std::uint8_t* buffer, std::size_t bytes) {
+  if (bytes < kMapHeader || std::memcmp(buffer, kMapMagic, sizeof kMapMagic) != 0) return 0;
+  MapReader header(buffer + sizeof kMapMagic, kMapHeader - sizeof kMapMagic);
+  header.u32();
+  return header.u32();
+}
+
 const char* open_map(const std::uint8_t* buffer, std::size_t bytes, std::uint32_t kind, MapSection* sections,
                      int* count) {
   if (bytes < kMapHeader || std::memcmp(buffer, kMapMagic, sizeof kMapMagic) != 0) return "it is no saved map";

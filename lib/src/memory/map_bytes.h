@@ -10,6 +10,7 @@
 namespace pf {
 
 constexpr std::uint32_t kMapVersion = 0;
+constexpr std::uint32_t kPortableMap = 1, kContinuedMap = 2;  ///< kinds: PF_MAP_PORTABLE, PF_MAP_CONTINUE
 constexpr std::size_t kMapHeader = 32, kSectionHeader = 24;
 constexpr std::uint8_t kMapMagic[8] = {0x89, 'P', 'F', 'M', 'A', 'P', 0x0d, 0x0a};
 
@@ -32,6 +33,11 @@ class MapWriter {
     for (int i = 0; i < count; ++i) real(static_cast<double>(values[i]));
   }
   void bytes(const std::uint8_t* from, std::size_t count);
+  /// Leaves room for what the caller writes before the section ends. Null where it does not fit, or is only counted.
+  std::uint8_t* take(std::size_t count) {
+    used_ += count;
+    return fits() ? buffer_ + used_ - count : nullptr;
+  }
 
   /// The header, whose numbers end() fills in.
   void begin(std::uint32_t kind);
@@ -97,5 +103,8 @@ constexpr int kMaxSections = 16;
 /// Checks header, lengths and CRCs of a whole map, and lists its sections. Null, or what is wrong with it.
 const char* open_map(const std::uint8_t* buffer, std::size_t bytes, std::uint32_t kind, MapSection* sections,
                      int* count);
+
+/// Kind of a map, whatever else is wrong with it; 0: it is none.
+std::uint32_t map_kind(const std::uint8_t* buffer, std::size_t bytes);
 
 }  // namespace pf

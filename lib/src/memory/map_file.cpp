@@ -207,10 +207,9 @@ const char* SavedMap::read_lens(const MapSection& section) {
   const bool finite = in.reals(intrinsics, 4, kMost) && in.reals(distortion, 8, kMost);
   if (in.failed() || in.left() != 0) return "LENS has another length";
   constexpr std::uint32_t kMostPixels = 1u << 16;
-  Camera camera;
   if (!finite || reserved != 0 || model > kMostPixels || width > kMostPixels || height > kMostPixels ||
       make_camera(static_cast<std::int32_t>(model), static_cast<std::int32_t>(width), static_cast<std::int32_t>(height),
-                  intrinsics, distortion, &camera) != nullptr)
+                  intrinsics, distortion, &lens_) != nullptr)
     return "LENS is no calibration";
   return nullptr;
 }

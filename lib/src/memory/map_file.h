@@ -15,7 +15,6 @@
 
 namespace pf {
 
-constexpr std::uint32_t kPortableMap = 1;           ///< PF_MAP_PORTABLE
 constexpr std::uint32_t kMaxSavedId = 0x7fffffffu;  ///< of features, planes and places
 
 /// A plane that lies in its frame.
@@ -57,6 +56,7 @@ class SavedMap {
   /// Reads and checks every number. Null, or what is wrong with it. scratch: for one place.
   const char* open(const std::uint8_t* buffer, std::size_t bytes, KeptPlace* scratch);
 
+  const Camera& lens() const { return lens_; }  ///< that the map was made with, without a readout
   const Vec3& gravity_W() const { return gravity_W_; }
   int num_planes() const { return num_planes_; }
   int num_places() const { return num_places_; }
@@ -98,7 +98,7 @@ class SavedMap {
   }
 
  private:
-  static const char* read_lens(const MapSection& section);
+  const char* read_lens(const MapSection& section);
   const char* read_world(const MapSection& section);
   const char* check_planes(const MapSection& section);
   const char* check_places(const MapSection& section, KeptPlace* scratch);
@@ -112,6 +112,7 @@ class SavedMap {
   static const char* read_anchor(MapReader* in, Anchor* anchor);
 
   MapSection planes_, places_, anchors_;
+  Camera lens_;
   Vec3 gravity_W_ = Vec3::Zero();
   int num_planes_ = 0, num_places_ = 0, num_anchors_ = 0;
   std::uint32_t plane_id_[kMaxPlanes] = {}, place_id_[kMaxPlaces] = {};

@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A pose that the points of a part of the map support: of a place, or of a keyframe.
 struct Recalled {
   PoseEstimate pose;
@@ -80,6 +82,8 @@ class PlaceRecall {
     }
     return false;
   }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxTried = 3;

@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Points of one place that the image may show.
 struct PlaceMatches {
   static constexpr int kMax = 96;
@@ -44,6 +46,8 @@ class PlaceSearch {
   /// The pose from which most of the matches are where they should be. Its covariance allows for what the points share. Returns the number
   /// of inliers, 0 where they are too few. pose: where the place was seen from. is_inlier: of each match.
   int find_pose_of(const Camera& camera, const PlaceMatches& matches, PoseEstimate* pose, bool* is_inlier);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kLevels = 3;  ///< of the image's pyramid, that are described

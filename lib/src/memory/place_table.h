@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 class PlaceTable {
  public:
   bool layout(Arena& arena, int capacity) {
@@ -63,6 +65,8 @@ class PlaceTable {
     count_frame(&returned_);
   }
   int returned() const { return returned_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int most_redundant(const KeptPlace& another) const;

@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Properties of all kinds (kinds.h), for code that does not include them.
 extern const KindInfo kKindInfo[kBlockKinds];
 inline const KindInfo& info(BlockKind kind) { return kKindInfo[static_cast<int>(kind)]; }
@@ -85,6 +87,8 @@ struct State {
       if (is_planar(block[slot].kind)) f(slot);
     }
   }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   std::int16_t* next_link(int parent, int child);

@@ -16,6 +16,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Kind of frames that a session accepts: the kind of its first frame.
 enum class FrameKind { kUndecided, kImages, kObservations };
 
@@ -78,6 +80,8 @@ class Session {
   const ImuLog& imu() const { return imu_; }
   /// Gravity in the W of the current map as the caller gave it; zero: not given.
   Vec3 given_gravity_W() const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames.

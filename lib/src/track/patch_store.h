@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Result for a patch in the last frame. With the numbers of pf_match_status_t, one for a patch that was not searched for, and
 /// PF_PATCH_WAITING: found, and no measurement yet.
 enum class PatchStatus : std::uint8_t { kUnseen = 0, kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4, kWaiting = 5 };
@@ -90,6 +92,9 @@ class PatchStore {
     for (int i = 0; i < capacity_; ++i) n += used(i) && entry_[i].camera == camera;
     return n;
   }
+
+  /// base/archive.h. slots: of the blocks that it names; max_side: of a patch [px].
+  void carry(Archive& archive, int slots, int max_side);
 
  private:
   StoredPatch* entry_ = nullptr;

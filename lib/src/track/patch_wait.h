@@ -7,6 +7,8 @@
 
 namespace pf {
 
+class Archive;
+
 enum class WaitVerdict : std::uint8_t {
   kWait,   ///< too little parallax, or more than one plane explains it
   kJoin,   ///< the plane in `joined` does
@@ -39,6 +41,8 @@ class PatchWait {
   bool passes(std::uint32_t plane) const;
   /// Number of planes that are not rejected.
   int open() const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Trial {

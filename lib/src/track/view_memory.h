@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A kept view that is like the current image.
 struct Recognition {
   float score = 0;  ///< correlation, -1 .. 1
@@ -38,6 +40,8 @@ class ViewMemory {
   void keep_if_new(const Pyramid& image, const Quat& q_WC, const Vec3& p_W);
   /// The kept view that correlates best with an image, turned as the image is against it. Score 0 without any.
   Recognition recognise(const Pyramid& image, const Camera& camera) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct View {

@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Which parts of the image are not the scene (the carrier's own body, a date that is written over the picture), one bit for each cell of
 /// 4 x 4 px. A cell of which any pixel is masked is masked.
 class ImageMask {
@@ -38,6 +40,8 @@ class ImageMask {
   bool is_clear(const Vec2& pixel, int margin) const;
   /// Whether any cell of a rectangle is clear.
   bool has_clear(const Rect& rect) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Span {

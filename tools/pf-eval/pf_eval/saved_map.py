@@ -15,8 +15,10 @@ DESCRIPTION = """Says what is in a map that pf-capture --save-map or pf_save_map
 
 MAGIC = b"\x89PFMAP\r\n"
 HEADER, SECTION = struct.Struct("<8sIIQII"), struct.Struct("<IIQII")
+PORTABLE, CONTINUE = 1, 2
 TAGS = ["LENS", "WRLD", "PLAN", "PLAC"]  # and ANCH behind them, where there are anchors
 PATCH = 22 * 22
+KERNELS = {1: "reference", 2: "portable", 3: "avx2", 4: "avx512", 5: "neon"}
 MODELS = {1: "pinhole", 2: "radtan", 3: "equidistant", 4: "division"}
 
 
@@ -66,8 +68,8 @@ def sections_of(data):
         raise Refused(f"its format has version {version}; this program reads version 0")
     if crc != crc32c(data[:HEADER.size - 4]):
         raise Refused("its header is damaged")
-    if kind != 1:
-        raise Refused("it is not portable")
+    if kind not in (PORTABLE, CONTINUE):
+        raise Refused(f"it is of kind {kind}, which this program does not know")
     if total != len(data):
         raise Refused(f"it has {len(data)} bytes and should have {total}")
     at, found = HEADER.size, {}
@@ -81,9 +83,24 @@ def sections_of(data):
             raise Refused(f"section {name} is damaged")
         found[name] = Numbers(name, payload)
         at += SECTION.size + length
-    if list(found) not in (TAGS, [*TAGS, "ANCH"]) or at != len(data):
-        raise Refused("it has not the sections of a portable map")
+    known = (TAGS, [*TAGS, "ANCH"]) if kind == PORTABLE else (["ORIG", "LIVE"],)
+    if list(found) not in known or at != len(data):
+        raise Refused("it has not the sections of its kind")
     return found
+
+
+def read_origin(sections):
+    """What a context that goes on has to have in common with the one that was saved."""
+    version, scalar, kernels, config, block = sections["ORIG"].take("4IQ")
+    sections["ORIG"].end()
+    return {"kind": "continue", "release": f"{version >> 16}.{version >> 8 & 255}.{version & 255}",
+            "scalar": {8: "double", 4: "float"}.get(scalar, str(scalar)), "kernels": KERNELS.get(kernels, str(kernels)),
+            "config": f"{config:08x}", "block_bytes": block, "live_bytes": len(sections["LIVE"].data)}
+
+
+def text_of_origin(origin):
+    return (f"  {origin['bytes'] / 1000:.1f} kB to go on with at the next frame: release {origin['release']}, {origin['scalar']}, "
+            f"kernels {origin['kernels']}, config {origin['config']}, block of {origin['block_bytes']} bytes")
 
 
 def read_lens(numbers):
@@ -178,6 +195,8 @@ def read(path):
         raise Refused(f"{path}: {error.strerror}") from error
     try:
         found = sections_of(data)
+        if "ORIG" in found:
+            return {"bytes": len(data), **read_origin(found)}
         gravity = list(found["WRLD"].take("3d"))
         found["WRLD"].end()
         places = read_places(found["PLAC"])
@@ -209,6 +228,8 @@ def to_ply(saved):
 
 
 def summary_of(saved):
+    if saved.get("kind") == "continue":
+        return saved
     points = points_of(saved)
     return {"bytes": saved["bytes"], "lens": saved["lens"], "gravity_W": saved["gravity_W"],
             "places": [{"id": place["id"], "points": len(place["points"]), "p_WK": place["p_WK"], "depth": place["depth"]}
@@ -219,6 +240,8 @@ def summary_of(saved):
 
 
 def text_of(summary):
+    if summary.get("kind") == "continue":
+        return text_of_origin(summary)
     lens, lines = summary["lens"], []
     lines.append(f"  {summary['bytes'] / 1000:.1f} kB, of a {lens['model']} camera of {lens['width']} x {lens['height']} "
                  f"pixels, f {lens['fx']:.1f}")
@@ -247,7 +270,9 @@ def main(words):
     try:
         saved = read(options.file)
         summary = summary_of(saved)
-        for path, text in ((options.ply, to_ply(saved)), (options.json, json.dumps(summary, indent=2) + "\n")):
+        if options.ply and saved.get("kind") == "continue":
+            raise Refused(f"{options.file}: it is to go on with, and tells no places; save a portable map for --ply")
+        for path, text in ((options.ply, to_ply(saved) if options.ply else ""), (options.json, json.dumps(summary, indent=2) + "\n")):
             if path == "-":
                 sys.stdout.write(text)
             elif path:

@@ -43,19 +43,19 @@ void add_starts(nb::class_<Context>& slam) {
       nb::arg("wall"), doc::pf_add_wall);
   slam.def(
       "save_map",
-      [](Context& self) -> nb::object {
+      [](Context& self, pf_map_kind_t kind) -> nb::object {
         nb::object map = nb::none();
         self.run("save_map", [&](pf_slam_t* context) {
           size_t bytes = 0;
-          pf_status_t status = pf_map_size(context, PF_MAP_PORTABLE, &bytes);
+          pf_status_t status = pf_map_size(context, kind, &bytes);
           std::string buffer(bytes, '\0');
-          if (status == PF_OK) status = pf_save_map(context, PF_MAP_PORTABLE, buffer.data(), bytes, &bytes);
+          if (status == PF_OK) status = pf_save_map(context, kind, buffer.data(), bytes, &bytes);
           if (status == PF_OK) map = nb::bytes(buffer.data(), bytes);
           return status;
         });
         return map;
       },
-      doc::pf_save_map);
+      nb::arg("kind") = PF_MAP_PORTABLE, doc::pf_save_map);
   slam.def(
       "load_map",
       [](Context& self, const nb::bytes& map) {

@@ -14,6 +14,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Where features are searched for, and how their matches are treated.
 struct SearchMode {
   /// Searches where the image as a whole has moved, where the prediction is vague. A match still has to pass the gate about its prediction.
@@ -64,6 +66,8 @@ class FeatureSearch {
   void learn_templates(int count);
 
   const Tracker& tracker() const { return search_.tracker(); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   bool is_visible(int feature, Vec2* pixel) const;

@@ -19,6 +19,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// How a frame is measured.
 struct MeasureMode {
   bool starts = false;      ///< five inliers are enough: there is no map yet that a wrong pose could corrupt
@@ -61,6 +63,8 @@ class ImageFrontEnd {
 
   FeatureSearch& search() { return search_; }
   CornerFeatures& corners() { return corners_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int list_candidates();

@@ -6,6 +6,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// The error of a match (lens, warp, first view) depends on the view, and repeats in every frame of a camera at rest. So a view counts as
 /// often as it takes to be worth one independent measurement, tau frames; in those after them the map is considered and not estimated
 /// (Schmidt), until the camera sees something else.
@@ -21,6 +23,8 @@ class SameView {
   void note(const Body& body, Scalar median_depth, Scalar focal_px);
   /// Notes any other frame.
   void forget() { data_.frames = 0; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

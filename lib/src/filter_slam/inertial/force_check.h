@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 class ForceCheck {
  public:
   ForceCheck(const Settings& settings, const ImuLog& imu) : settings_(settings), imu_(imu) {}
@@ -23,6 +25,8 @@ class ForceCheck {
     *value = data_.value;
     return data_.reason;
   }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -15,6 +15,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Inputs of a frame beside its matches.
 struct MovingFrame {
   bool keep;             ///< it is tracked in a map that samples may scale
@@ -44,6 +46,8 @@ class MovingStart {
   bool is_reversed() const { return data_.reversed; }
   /// Notes a frame. True where *solution has small sigmas, fits, and both halves of the poses agree.
   bool note(const MovingFrame& told, MovingSolution* solution);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxPixels = 64;

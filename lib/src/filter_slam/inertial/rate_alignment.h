@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// c = scale R_CB g(t - delay) + b over the intervals between frames, c the camera's rates and g the gyroscope's means.
 struct RateFit {
   int count = 0;           ///< intervals
@@ -40,6 +42,8 @@ class RateAlignment {
   /// Fits rates. R_CB: known axes; null: they are estimated too. at_s: delay about which is searched, by reach_s to either side (0: it is
   /// known). False where samples are missing or nothing rotates.
   bool fit(const ImuLog& log, double at_s, double reach_s, const Mat3* R_CB, RateFit* out);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMax = 128;

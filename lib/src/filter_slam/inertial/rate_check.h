@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 class RateCheck {
  public:
   RateCheck(const Settings& settings, const Filter& filter, const ImuLog& imu, const Frame& frame)
@@ -44,6 +46,8 @@ class RateCheck {
   bool finds_axes() const;
   /// Why the samples do not move the body. *value: its number; *R_CB: the axes that fit, both as far as the reason has them.
   UnitReason reason(Scalar* value, Mat3* R_CB) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// The frame that the next interval of rates begins at.

@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 class RestDetector {
  public:
   RestDetector(const Settings& settings, const Frame& frame, const ImuLog& imu, const UnitNoise& noise)
@@ -38,6 +40,8 @@ class RestDetector {
   /// The camera moves, by other evidence.
   void end_rest() { data_->rested = 0; }
   bool is_resting() const { return data_ != nullptr && data_->rested > Scalar(0); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxPixels = 60;

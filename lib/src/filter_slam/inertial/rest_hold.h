@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 class RestHold {
  public:
   RestHold(const Settings& settings, Filter& filter, RestDetector& rest, const ImuLog& imu, const BodyMotion& motion)
@@ -41,6 +43,8 @@ class RestHold {
   std::int64_t before_ns() const { return data_.before_ns; }
   /// Number of rests that have begun.
   int rests() const { return rests_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxLate = 8;

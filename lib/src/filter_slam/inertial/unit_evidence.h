@@ -16,6 +16,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// How a frame was measured.
 struct UnitFrame {
   bool before_was_tracked = false;  ///< the frame before, and so was the pose that this one's prediction begins at
@@ -51,6 +53,8 @@ class UnitEvidence {
   UnitUse use() const;
   /// True where samples may have been wrong since so soon after the map became metric that its scale depends on them alone.
   bool is_map_on_trial() const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -17,6 +17,8 @@
 
 namespace pf {
 
+class Archive;
+
 class UnitWatch {
  public:
   UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, BodyMotion& motion)
@@ -56,6 +58,8 @@ class UnitWatch {
   }
   /// Total time for which the unit has been rejected.
   std::int64_t rejected_ns() const { return parts_ != nullptr ? parts_->data.rejected_ns : 0; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 class FilterMemory {
  public:
   FilterMemory(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features)
@@ -51,6 +53,8 @@ class FilterMemory {
   const PlaceTable& table() const { return places_.table(); }
   /// Room for one place, within one call.
   KeptPlace* scratch() const { return scratch_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// A plane as its map had it.

@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Where the view differs from that of every place, a copy of the camera joins the state. It becomes a place when the view has left it, so
 /// that its points are as well known as they have become until then.
 class PlaceMaker {
@@ -31,6 +33,8 @@ class PlaceMaker {
   void follow(const CameraView& view, Scalar depth, KeptPlace* scratch);
   /// The place that was begun, as its camera and points are known now. False: there is none, or it has too few points.
   bool make(KeptPlace* out) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A place enters the state as a reference camera with the covariance of its record, and its points as points of that camera, so that what
 /// they share is a correlation. Records of several places, and one that enters again, have errors in common that no record tells. The n-th
 /// entry since the state began therefore has n (n + 1) times the covariance of its record, and a point that enters for the m-th time
@@ -47,6 +49,8 @@ class StatePlaces {
   /// After a tracked frame: places that were tried and belong to the view stay, the others leave; the nearest place of those that belong to
   /// it enters, and points that come into view; places out of reach leave.
   void follow(const CameraView& view, Scalar depth);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// Of an entry of the table.

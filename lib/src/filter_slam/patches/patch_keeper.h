@@ -21,6 +21,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Keeps the patches of walls: the order of work of one frame. Measures those that lie on a wall, follows those that wait for their plane
 /// (PatchMembership), drops those that fail, and has new ones initialised (PatchSelection).
 /// Servant 2008, sections 2.3 and 2.4 (lib/docs/theory/homography.md).
@@ -43,6 +45,8 @@ class PatchKeeper {
   const PatchStore& patches() const { return store_; }
   /// Depths of the inliers' middles. Returns how many.
   int inlier_depths(Scalar* depth) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// Drops all patches where the filter began anew, since their blocks are gone.

@@ -7,6 +7,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Noise of the corners of patches, estimated from the residuals of all patches together. Each corner has its own trace of residuals.
 class PatchNoise {
  public:
@@ -21,6 +23,8 @@ class PatchNoise {
   void learn(int frame, int entry, const StoredPatch& patch, const PatchMeasurement& z, Scalar trace_HPH);
   /// Updates the noise with the residuals that learn() has gathered in this frame.
   void end_frame() { model_.end_frame(); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   PatchMeasurement::Matrix gate_noise(const StoredPatch& patch) const;

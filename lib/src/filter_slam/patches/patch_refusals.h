@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Stores where patches of a plane were found elsewhere, and counts them as evidence against the plane.
 class PatchRefusals {
  public:
@@ -29,6 +31,8 @@ class PatchRefusals {
     for (const Refusal& refusal : refusals_)
       if (refusal.plane == plane) f(refusal.middle_W);
   }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxRefusals = 16;

@@ -18,6 +18,8 @@
 
 namespace pf {
 
+class Archive;
+
 class OwnPlaces {
  public:
   OwnPlaces(const Filter& filter, const Map& map, const Frame& frame) : filter_(filter), map_(map), frame_(frame) {}
@@ -42,6 +44,8 @@ class OwnPlaces {
   /// What the pixels of a feature say of its depth along the ray: how much farther than where it was put [m], its variance for pixels that
   /// are known to one pixel, and the ray. False where they have told nothing yet.
   bool depth(int feature, Scalar* farther, Scalar* variance, Vec3* ray_W) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// In float in both libraries.

@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Finds new planes among points that lie on none. Gee 2007, section 3.3.
 class PlaneDiscovery {
  public:
@@ -29,6 +31,8 @@ class PlaneDiscovery {
   /// Finds them again, from the points that were on them. Each is tested as a new one, and keeps its id. One is given up where no plane is
   /// found though most of its points are known again.
   void resume();
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// Lists converged, well known points that lie on no plane yet. Returns how many.

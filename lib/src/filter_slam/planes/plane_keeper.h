@@ -17,6 +17,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Keeps the planes of the map: the order of work of one frame. Gee 2007, section 3 (lib/docs/theory/planes.md).
 class PlaneKeeper {
  public:
@@ -41,6 +43,8 @@ class PlaneKeeper {
 
   /// Planes that the caller says are vertical. Only where the state has gravity.
   VerticalTable& verticals() { return verticals_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void maintain_plane(int entry, bool may_doubt);

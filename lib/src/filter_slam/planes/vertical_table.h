@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Planes that the caller says are vertical (lib/docs/theory/inertial.md). How far a plane is from vertical is a constant, so telling it
 /// again adds no information.
 class VerticalTable {
@@ -25,6 +27,8 @@ class VerticalTable {
   Status tell(int plane_entry, Scalar sigma);
   /// Plane `from` is merged into `to`, which is told what it was, unless it was told already.
   void merge(int from, int to);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// That a plane is vertical.

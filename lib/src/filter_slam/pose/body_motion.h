@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 class BodyMotion {
  public:
   BodyMotion(const Settings& settings, Filter& filter, const ImuLog& imu)
@@ -42,6 +44,8 @@ class BodyMotion {
   void predict_coasting(const Body& body, std::int64_t before_ns, std::int64_t t_ns, Transition* transition) const;
   /// Body and pose covariance (6x6) at t_ns; predicted if t_ns is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames.

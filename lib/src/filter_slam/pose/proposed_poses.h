@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// After a gap a single frame may agree with the map by chance, or because an image like the last one is shown once more: of frames in
 /// random order one in twenty is a neighbour of the one before. The distinction is whether the next frame proposes a pose to which a hand
 /// can have moved the camera in the meantime.
@@ -26,6 +28,8 @@ class ProposedPoses {
   /// evidence. Where the last frame made a proposal, its log-odds count in place of that if the camera can have moved from there to here;
   /// if not, one of the two is wrong. Returns the log-odds with this frame's evidence.
   Scalar propose(const Quat& q_WC, const Vec3& p_W, Scalar depth, Scalar before, Scalar evidence);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   bool follows(const PoseProposal& next) const;

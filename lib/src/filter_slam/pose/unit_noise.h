@@ -17,6 +17,8 @@
 
 namespace pf {
 
+class Archive;
+
 class UnitNoise {
  public:
   enum Sensor { kGyro = 0, kAccel = 1 };
@@ -35,6 +37,8 @@ class UnitNoise {
   Scalar ratio(Sensor sensor) const;
   /// True where not even ten times the stated noise explains the innovations.
   bool is_at_bound(Sensor sensor) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Data {

@@ -17,6 +17,8 @@
 
 namespace pf {
 
+class Archive;
+
 class Relocaliser {
  public:
   Relocaliser(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureSearch& search,
@@ -46,6 +48,8 @@ class Relocaliser {
   UpdateOutcome recover(const MeasureMode& mode, const UpdateOutcome& before);
 
   int kept_views() const { return views_.count(); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// Where to search, instead of about the prediction.

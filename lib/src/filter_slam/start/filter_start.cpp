@@ -4,6 +4,8 @@
 #include "base/table_entries.h"
 #include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/walls_apart.h"
+#include "frame/tuning.h"
+#include "geometry/lens_deviation.h"
 
 namespace pf {
 namespace {
@@ -43,7 +45,10 @@ Status FilterStart::use_map(const SavedMap& saved, FilterMemory* memory) {
   const bool is_chosen =
       beginning_.known().given || target_.target().kind != TargetKind::kNone || map_.planes.has_known();
   if (is_chosen || tracking_.has_pose()) return Status::kState;
+  const Camera lens = lens_of_map(settings_.lens, settings_.camera, saved.lens(), tuning::tracking::kMaxLensDeviation);
+  filter_.set_lens(lens, settings_.lens);  // before there is a block
   const Status status = memory->load(saved, tracking_.map_id());
+  if (status != Status::kOk) filter_.set_lens(settings_.camera, settings_.lens);
   if (status != Status::kOk) return status;
   const KeptPlace& place = memory->table()[0];
   data_.knows_scale = true;

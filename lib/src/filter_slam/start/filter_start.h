@@ -22,6 +22,8 @@
 
 namespace pf {
 
+class Archive;
+
 class FilterStart {
  public:
   /// update: for its scratch.
@@ -82,6 +84,8 @@ class FilterStart {
   const StartRecorder& recorder() const { return recorder_; }
   KeptMounting& mounting() { return mounting_; }
   const KeptMounting& mounting() const { return mounting_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames.

@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeptMounting {
  public:
   KeptMounting(const BodyLayout& layout, const ImuUnit& unit, const Filter& filter)
@@ -26,6 +28,8 @@ class KeptMounting {
   void put_covariance(Scalar* covariance) const;
   /// Present estimate of the unit's mounting on the camera, in metres.
   Mounting now() const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   struct Kept {

@@ -15,6 +15,8 @@
 
 namespace pf {
 
+class Archive;
+
 class MapBeginning {
  public:
   MapBeginning(const Settings& settings, const BodyMotion& motion, const KeptMounting& mounting, Filter& filter,
@@ -54,6 +56,8 @@ class MapBeginning {
   void begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth);
   /// From here on begin_at() uses the present covariance of the pose. Velocities are unknown, and replaced by those of a record.
   void note_covariance();
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void leave_anchors();

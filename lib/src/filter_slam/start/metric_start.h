@@ -14,6 +14,8 @@
 
 namespace pf {
 
+class Archive;
+
 class MetricStart {
  public:
   MetricStart(const Settings& settings, Filter& filter, Map& map, TrackingState& tracking, FilterStart& start)
@@ -28,6 +30,8 @@ class MetricStart {
   bool use_rest(const RestReading& rest, std::int64_t begin_ns);
   /// The same for a camera that moves: the map goes on in metres, under another id.
   void use_motion(const MovingSolution& solution);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   const Settings& settings_;

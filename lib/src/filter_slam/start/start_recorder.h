@@ -16,6 +16,8 @@
 
 namespace pf {
 
+class Archive;
+
 class StartRecorder {
  public:
   /// update: for its scratch. target: that the map may have begun at.
@@ -53,6 +55,8 @@ class StartRecorder {
   /// contradicted them, and earlier places and poses are not valid. has_image: otherwise the caller's own observations begin features
   /// again.
   bool record_frame(bool has_image);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// The lens of a start without a target is estimated with its depths, and not only considered.

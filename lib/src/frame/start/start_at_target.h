@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A target as an image shows it.
 struct TargetSighting {
   PoseEstimate pose;
@@ -35,6 +37,8 @@ class StartAtTarget {
 
   /// Finds the target in the image, and keeps the pose that was found as the target's first pose. False: not found.
   bool find(const Camera& camera, const Tracker& tracker, TargetSighting* sighting);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void put_in_place(TargetSighting* sighting);

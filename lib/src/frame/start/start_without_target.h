@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 class StartWithoutTarget {
  public:
   /// lens_rows: of a lens that a start adjusts with its depths; 0: it is exact.
@@ -60,6 +62,8 @@ class StartWithoutTarget {
   /// Frame k of the record in W.
   CameraView view(int k) const;
   std::int64_t begin_ns() const { return data_.begin_ns; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames, beside the record and the last solution.

@@ -5,6 +5,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Holds the target's points at the caller's coordinates while keyframes are adjusted.
 class HeldTarget {
  public:
@@ -21,6 +23,8 @@ class HeldTarget {
   void add_to(const KeyframeMap& map, AdjustedPoses* poses, AdjustedPoints* points) const;
   /// The keyframe that hosts the target's points has moved; they have not.
   void put_back(KeyframeMap* map) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   CameraView view_;

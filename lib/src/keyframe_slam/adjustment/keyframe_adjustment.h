@@ -12,6 +12,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// What an adjustment took part in.
 struct AdjustmentShape {
   int keyframes = 1;               ///< whose pixels count
@@ -51,6 +53,8 @@ class KeyframeAdjustment {
   /// All of W is moved.
   void move(const Similarity& T) { map_covariance_ = T.of_pose_covariance(map_covariance_); }
   HeldTarget& target() { return target_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Scalar sigma_px() const;

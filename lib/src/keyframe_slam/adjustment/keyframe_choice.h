@@ -6,6 +6,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Most keyframes that are adjusted at once.
 int max_free_keyframes(const Settings& settings);
 
@@ -26,6 +28,8 @@ class KeyframeChoice {
   bool is_held_by_target() const { return is_held_by_target_; }
   /// All but one of many keyframes are adjusted, and neither other keyframes nor the target hold the scale.
   bool needs_distance(const AdjustedPoses& poses) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void connect(bool settled);

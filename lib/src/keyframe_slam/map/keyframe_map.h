@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A point of the window, beside its row in the feature table, with the same number.
 struct KeyframePoint {
   int host = -1;  ///< keyframe
@@ -77,6 +79,8 @@ class KeyframeMap {
   /// Sets bearing and inverse depth of a point in its host.
   void place(int i, const Vec3& p_W);
   void drop(int i);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   const Settings& settings_;

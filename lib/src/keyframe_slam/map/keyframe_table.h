@@ -10,6 +10,9 @@
 
 namespace pf {
 
+class Archive;
+class FeatureTable;
+
 struct Keyframe {
   int number = 0;  ///< counted from 1 in the order of time; 0: this entry is free
   std::int64_t t_ns = 0;
@@ -107,6 +110,8 @@ class KeyframeTable {
   void forget_point(int point) {
     for (int k = 0; k < capacity_; ++k) pixels(k)[point].seen = false;
   }
+
+  void carry(Archive& archive, const FeatureTable& features);  ///< base/archive.h
 
  private:
   Keyframe* keyframe_ = nullptr;

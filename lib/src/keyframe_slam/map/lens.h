@@ -6,6 +6,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeLens {
  public:
   static constexpr int kMaxEntries = kLensParameters * kLensParameters;  ///< of a matrix of its rows, row-major
@@ -21,6 +23,8 @@ class KeyframeLens {
   void move(const Camera& camera) { camera_ = camera; }
   /// Covariance from an adjustment whose pixels were weighted `inflation` times too much.
   void set_covariance(const Scalar* covariance, Scalar inflation);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   LensRows rows_;

@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeRecall {
  public:
   KeyframeRecall(const Settings& settings, const KeyframeMap& map) : settings_(settings), map_(map) {}
@@ -25,6 +27,8 @@ class KeyframeRecall {
   /// Where the described image looks like a place of another map, and no other place of those like it as much: the pose there, and points
   /// of that place with their pixels.
   bool find_other(Recalled* best, PlaceMatches* matches);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int sources() const;

@@ -7,6 +7,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Where the present map is in another one.
 struct MapJoin {
   std::uint32_t map_id = 0;        ///< of the other one; 0: nowhere
@@ -30,6 +32,8 @@ class JoinFinder {
     found_ = MapJoin();
     return found;
   }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   bool recognise(const CameraView& view, MapJoin* out);

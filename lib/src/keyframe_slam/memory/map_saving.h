@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 class MapSaving {
  public:
   MapSaving(const Settings& settings, KeyframeMap& map, KeyframePlanes& planes, const PlaceKeeper& keeper)
@@ -26,6 +28,8 @@ class MapSaving {
   bool is_loaded() const { return is_loaded_; }
   /// Room for one place, within one call.
   KeptPlace* scratch() const { return keeper_.scratch(); }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What a place is made of: one of the table, or a keyframe.

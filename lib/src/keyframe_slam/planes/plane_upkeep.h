@@ -6,6 +6,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Tends to the planes of the window: found among its points, fitted again where the adjustment had no part of them, merged and dissolved
 /// (lib/docs/theory/window.md). Walls of a plan take points and other planes, and stay.
 class PlaneUpkeep {
@@ -16,6 +18,8 @@ class PlaneUpkeep {
   void init() { searches_ = 0; }
   /// The work of one keyframe, after its adjustment.
   void maintain(const Vec3& viewer_W);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int drop_distant_points(int k);

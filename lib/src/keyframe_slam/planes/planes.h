@@ -12,6 +12,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Beside its row in the plane table, with the same number. The plane lies in its frame.
 struct KeyframePlane {
   PlaneFrame frame;
@@ -67,6 +69,8 @@ class KeyframePlanes {
   Vec3* points_W() { return map_.scratch().vector; }
   /// One for each point that is listed; its name is its row.
   PlaneCandidate* listed() { return candidate_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   bool lay(int k, const PlaneFrame& about, const Vec3& x, const Mat3& covariance);

@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeRecord {
  public:
   KeyframeRecord(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
@@ -38,6 +40,8 @@ class KeyframeRecord {
   bool improve();
   /// The camera has moved far enough for a keyframe. A record that has had no better solution for long is over; its depths stay.
   void note_keyframe();
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   Vec2 pixel_of(const Match& match) const;

@@ -6,6 +6,7 @@
 #include "frame/start/target_surface.h"
 #include "frame/start/tuning.h"
 #include "frame/tuning.h"
+#include "geometry/lens_deviation.h"
 #include "keyframe_slam/map/keyframe_upkeep.h"
 
 namespace pf {
@@ -81,6 +82,7 @@ Status KeyframeStart::use_map(const SavedMap& saved) {
   if (is_chosen || is_in_loaded_map()) return Status::kState;
   const Status status = saving_.load(saved, tracking_.map_id());
   if (status != Status::kOk) return status;
+  map_.move_lens(lens_of_map(settings_.lens, settings_.camera, saved.lens(), tuning::tracking::kMaxLensDeviation));
   const KeptPlace& place = map_.places[0];
   Mat6 anywhere = Mat6::Identity() * (kAnyRotation * kAnyRotation);
   anywhere.bottomRightCorner<3, 3>() = Mat3::Identity() * (kAnyPosition * kAnyPosition * place.depth * place.depth);

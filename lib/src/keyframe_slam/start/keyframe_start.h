@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeStart {
  public:
   KeyframeStart(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
@@ -51,6 +53,8 @@ class KeyframeStart {
 
   /// Sets the pose of the first frame and makes it a keyframe. False where that is not possible in this frame.
   bool start_in_image();
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void set_pose(bool at_target);

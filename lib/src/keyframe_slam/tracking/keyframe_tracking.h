@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeTracking {
  public:
   KeyframeTracking(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion, NoiseModel& noise,
@@ -38,6 +40,8 @@ class KeyframeTracking {
   void correct(const CameraPose& pose, const Mat6& information);
   /// Updates the noise model with the residuals of this frame's inliers.
   void learn_noise();
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int search_by_scouts(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving);

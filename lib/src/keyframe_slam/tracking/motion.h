@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeMotion {
  public:
   static constexpr int kMaxRows = BodyLayout::kVelocityRows;
@@ -66,6 +68,8 @@ class KeyframeMotion {
   bool is_sound() const;
   /// Body and pose covariance at t_ns, predicted if it is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames.

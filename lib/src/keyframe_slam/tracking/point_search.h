@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A point that is searched for in this frame.
 struct SearchedPoint {
   int match;        ///< of the frame
@@ -61,6 +63,8 @@ class PointSearch {
   void learn_templates(const PosePrior& at);
 
   const ImageSearch& images() const { return images_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int list(const PosePrior& at, bool placed, Scalar depth);

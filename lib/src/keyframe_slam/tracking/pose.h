@@ -10,6 +10,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A match with a point whose depth is known.
 struct PoseMatch {
   PnpPoint point;
@@ -52,6 +54,8 @@ class KeyframePose {
   /// Fit to all of the first `count` matches from the prior, where no triple has enough evidence; matches beyond the gate are then
   /// rejected. Returns the number of inliers, 0 where it fails.
   int fit(const Camera& camera, int count, const PosePrior& prior, Scalar gate, CameraPose* pose, Mat6* information);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   PoseMatch* match_ = nullptr;  ///< capacity each

@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// All functions work on the first `found` points of the search's list, which were found.
 class PoseMeasurement {
  public:
@@ -34,6 +36,8 @@ class PoseMeasurement {
   bool is_inlier(int c) const { return pose_.is_inlier(c); }
   /// Bound within which a match supports a pose [px].
   Scalar bound_px() const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   void make_match(int c, const PosePrior& prior, Scalar depth, int shared);

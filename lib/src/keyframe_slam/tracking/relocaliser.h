@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 class KeyframeRelocaliser {
  public:
   KeyframeRelocaliser(const Settings& settings, KeyframeMap& map, KeyframeMotion& motion, const Tracker& tracker,
@@ -61,6 +63,8 @@ class KeyframeRelocaliser {
 
   int kept_views() const { return views_.count(); }
   PlaceKeeper& keeper() { return keeper_; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// Result of a search about one hypothesis.

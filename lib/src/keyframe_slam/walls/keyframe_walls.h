@@ -11,6 +11,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// The map's planes are adjusted with its keyframes and points, walls among them, and the adjustment knows nothing of the plan. The plan
 /// tells where the map as a whole is (WallGauge). A wall that the map has not measured is where the plan has it, as the gauge knows it.
 class KeyframeWalls {
@@ -46,6 +48,8 @@ class KeyframeWalls {
   Mat6 pose_covariance(const Vec3& p_W) const { return gauge_.pose_covariance(p_W); }
   /// Of (a, b, h) of a wall in W.
   Mat3 covariance(int wall) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   bool is_used(int k) const { return table_.used(k) && table_[k].known && table_[k].counts(); }

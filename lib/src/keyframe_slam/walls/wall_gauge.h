@@ -8,6 +8,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// A wall that the map has measured.
 struct MeasuredWall {
   int wall;          ///< entry
@@ -32,6 +34,7 @@ class WallGauge {
   bool layout(Arena& arena, int max_walls);
   void init();
 
+  int capacity() const { return walls_; }
   bool has_begun() const { return has_begun_; }
   /// The map is held by a pose at p_W with a covariance of (theta, p), and its size is known to a share.
   void begin(const Mat6& pose, const Vec3& p_W, Scalar sigma_scale);
@@ -58,6 +61,8 @@ class WallGauge {
   Mat3 plane_covariance(const PlaneFrame& frame) const;
   /// Of (theta, p) of a pose of the map, the same.
   Mat6 pose_covariance(const Vec3& p_W) const;
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   int row_of(int k) const { return kMapRows + 3 * k; }

@@ -12,6 +12,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Decides when and where new patches begin: on the walls in view and, where the plan has none, beside them.
 class PatchSelection {
  public:
@@ -29,6 +31,8 @@ class PatchSelection {
 
   /// Initialises the patches that are wanted in this frame.
   void begin_patches(const Pyramid& image);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   static constexpr int kMaxSquares = 6;

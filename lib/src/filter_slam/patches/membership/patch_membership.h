@@ -13,6 +13,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Decides which plane a patch lies on. Until that is decided the patch is followed and does not update the filter
 /// (lib/docs/theory/walls.md). Servant 2008, section 2.5
 class PatchMembership {
@@ -35,6 +37,8 @@ class PatchMembership {
   void measure(const Pyramid& image, bool is_young, bool is_contested, StoredPatch* patch);
   /// Keeps the pose of the frame in which the corners were found.
   void end_frame() { q_last_ = filter_.state().body.q_WC; }
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// Predicts a waiting patch: by the plane that explained the last frame, or else at its last place, rotated with the camera.

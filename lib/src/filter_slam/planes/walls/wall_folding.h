@@ -9,6 +9,8 @@
 
 namespace pf {
 
+class Archive;
+
 /// Folds points onto walls of the plan that none of them alone is known to lie on. Servant 2008, section 2.2 (lib/docs/theory/walls.md).
 class WallFolding {
  public:
@@ -20,6 +22,8 @@ class WallFolding {
   void note_late_walls() { data_.met_late = true; }
   /// Folds the points that agree with each other and with the wall's prior.
   void fold_by_consensus(int plane_entry);
+
+  void carry(Archive& archive);  ///< base/archive.h
 
  private:
   /// What is kept between frames.

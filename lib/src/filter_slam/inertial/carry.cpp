@@ -1,0 +1,138 @@
+#include "model/carry.h"
+
+#include "filter_slam/inertial/force_check.h"
+#include "filter_slam/inertial/moving_start.h"
+#include "filter_slam/inertial/rate_check.h"
+#include "filter_slam/inertial/rest_detector.h"
+#include "filter_slam/inertial/rest_hold.h"
+#include "filter_slam/inertial/unit_watch.h"
+
+namespace pf {
+namespace {
+
+void carry_reason(Archive& archive, UnitReason& reason) {
+  archive.within(reason, 0, static_cast<int>(UnitReason::kAccelSign));
+}
+
+void carry_still(Archive& archive, StillReading& still) {
+  auto& [gyro, accel, sigma_gyro, sigma_accel] = still;
+  archive.numbers(gyro, accel, sigma_gyro, sigma_accel);
+}
+
+void carry_fit(Archive& archive, RateFit& fit) {
+  auto& [count, delay, sigma_delay, R_CB, sigma_turn, scale, left, next_left, turning, left_mirrored, mirrored,
+         at_end] = fit;
+  archive.counts(count);
+  archive.numbers(delay, sigma_delay, R_CB, sigma_turn, scale, left, next_left, turning, left_mirrored);
+  archive.flags(mirrored, at_end);
+}
+
+}  // namespace
+
+void ForceCheck::carry(Archive& archive) {
+  auto& [last_ns, begin_ns, count, sum, length, reason, value] = data_;
+  archive.any(last_ns, begin_ns);
+  archive.counts(count);
+  archive.numbers(sum, length, value);
+  carry_reason(archive, reason);
+}
+
+/// Links and poses are those of one smoothing.
+void MovingStart::carry(Archive& archive) {
+  auto& [count, frames, t_ns, map_id, sigma_scale, reversed, delay_sigma, refused, left, first, end, correlation, view,
+         link, pose] = data_;
+  archive.within(count, 0, kMaxMovingPoses);
+  for (int* index : {&left, &first, &end}) archive.within(*index, 0, count);
+  archive.counts(frames, refused);
+  archive.any(t_ns, map_id);
+  archive.flags(reversed);
+  archive.numbers(sigma_scale, delay_sigma, correlation);
+  for (int k = 0; k < count; ++k) {
+    auto& [q_WC, p_W, covariance, view_ns, dt, gyro_bias, dq_B, v, p, by_bias, pixels, seen] = view[k];
+    archive.numbers(q_WC, p_W, covariance, dt, gyro_bias, dq_B, v, p, by_bias);
+    archive.any(view_ns);
+    archive.within(pixels, 0, kMaxPixels);
+    for (int i = 0; i < pixels; ++i) {
+      archive.any(seen[i].id);
+      archive.numbers(seen[i].x, seen[i].y);
+    }
+  }
+}
+
+void RateAlignment::carry(Archive& archive) {
+  archive.within(count_, 0, kMax);
+  for (int i = 0; i < count_; ++i) {
+    auto& [begin_ns, end_ns, c, g, slope, has_g] = interval_[i];
+    archive.any(begin_ns, end_ns);
+    archive.numbers(c);
+  }
+}
+
+void RateCheck::carry(Archive& archive) {
+  auto& [rates, begin, until_fit, fit, has_fit, is_open, reason, value, R_CB] = data_;
+  auto& [t_ns, q_WC, generation] = begin;
+  rates.carry(archive);
+  archive.any(t_ns, generation);
+  archive.numbers(q_WC, value, R_CB);
+  archive.within(until_fit, -Archive::kMaxCount, Archive::kMaxCount);
+  carry_fit(archive, fit);
+  archive.flags(has_fit, is_open);
+  carry_reason(archive, reason);
+}
+
+void RestDetector::carry(Archive& archive) {
+  if (data_ == nullptr) return;
+  auto& [begun, begin_ns, rest_begin_ns, sample_ns, count, num_seen, motion2, mean, square, rested, first_ns, mean_ns,
+         first, anew, motion_px, scatter] = *data_;
+  archive.flags(begun, anew);
+  archive.any(begin_ns, rest_begin_ns, sample_ns, first_ns, mean_ns);
+  archive.counts(count);
+  archive.within(num_seen, 0, kMaxPixels);
+  archive.within(first, 0, kMaxPixels);
+  archive.numbers(motion2, mean, square, rested, motion_px, scatter);
+  const auto carry_seen = [&](Seen& seen) {
+    auto& [id, frames, pixel] = seen;
+    archive.any(id);
+    archive.within(frames, 1, Archive::kMaxCount);
+    archive.numbers(pixel);
+  };
+  for (int i = 0; i < num_seen; ++i) carry_seen(seen_[i]);
+  for (int i = 0; i < first; ++i) carry_seen(seen_[kMaxPixels + i]);
+}
+
+void RestHold::carry(Archive& archive) {
+  auto& [holds, before_ns, last_ns, moved_px, sigma_rad, dt, m_per_px, still, late, late_count] = data_;
+  archive.flags(holds);
+  archive.any(before_ns, last_ns);
+  archive.numbers(moved_px, sigma_rad, dt, m_per_px);
+  carry_still(archive, still);
+  archive.within(late_count, 0, kMaxLate);
+  for (int i = 0; i < late_count; ++i) {
+    archive.any(late[i].before_ns);
+    carry_still(archive, late[i].still);
+  }
+  archive.counts(rests_);
+}
+
+void UnitEvidence::carry(Archive& archive) {
+  auto& [sum, doubts, used_ns, metric_ns, sound_ns] = data_;
+  archive.numbers(sum);
+  archive.counts(doubts);
+  for (std::int64_t* time : {&used_ns, &metric_ns, &sound_ns}) archive.within(*time, 0, INT64_MAX / 2);
+}
+
+void UnitWatch::carry(Archive& archive) {
+  if (parts_ == nullptr) return;
+  parts_->evidence.carry(archive);
+  parts_->rates.carry(archive);
+  auto& [mode, rejected_ns, prior, prior_ns, follows, is_contradicted, is_taken_back, tracked, tracked_ns, is_aligned] =
+      parts_->data;
+  archive.within(mode, 0, static_cast<int>(UnitMode::kRejected));
+  archive.within(rejected_ns, 0, INT64_MAX / 2);
+  archive.any(prior_ns, tracked_ns);
+  archive.flags(follows, is_contradicted, is_taken_back, is_aligned);
+  pf::carry(archive, prior);
+  pf::carry(archive, tracked);
+}
+
+}  // namespace pf
