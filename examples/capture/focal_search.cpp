@@ -79,12 +79,22 @@ bool track(const Options& options, int64_t frames, const std::function<bool()>& 
       dof += view.report.nis_dof;
     }
   }
-  pf_camera_t camera{};
-  if (dof > 0 && pf_get_camera(session.slam(), &camera, nullptr) == PF_OK) {
-    trial.end_px = camera.fx;
+  if (dof > 0 && pf_get_camera(session.slam(), &trial.end, trial.covariance) == PF_OK) {
     trial.cost = cost / static_cast<double>(dof);
   }
   return true;
+}
+
+bool is_done(const FocalTrial& trial) { return trial.end.fx > 0.0; }
+
+double end_px(const FocalTrial& trial) { return is_done(trial) ? trial.end.fx : trial.start_px; }
+
+/// Its standard deviations from its covariance; the focal length's is given. Pixels are as square as they were said to be.
+void set_sigmas(pf_camera_t& camera, const double covariance[100], double sigma_px) {
+  const auto variance = [&](int row) { return covariance[11 * row]; };
+  camera.sigma_focal = std::clamp(sigma_px / camera.fx, kSigmaAspect, 0.2);
+  camera.sigma_centre_px = std::max(1e-3, std::sqrt(std::max(variance(2), variance(3))));
+  camera.sigma_distortion[0] = std::min(1.0, std::sqrt(variance(4)));
 }
 
 /// The most likely first; then those that were lost or tracked nothing.
@@ -94,7 +104,7 @@ void order(std::vector<FocalTrial>& trials) {
     most = std::max(most, trial.tracked);
   }
   const auto is_lost = [most](const FocalTrial& trial) {
-    return trial.end_px <= 0.0 || static_cast<double>(trial.tracked) < kTrackedShare * static_cast<double>(most);
+    return !is_done(trial) || static_cast<double>(trial.tracked) < kTrackedShare * static_cast<double>(most);
   };
   std::stable_sort(trials.begin(), trials.end(), [&](const FocalTrial& a, const FocalTrial& b) {
     return is_lost(a) != is_lost(b) ? is_lost(b) : a.cost < b.cost;
@@ -107,17 +117,18 @@ bool is_uncalibrated(const Options& options) {
   return options.fov_deg > 0.0 || (options.calibration.empty() && options.source.rfind("video:", 0) == 0);
 }
 
-pf_camera_t guess_camera(int32_t width, int32_t height, double focal_px) {
+pf_camera_t guess_camera(const pf_camera_t& pixels, double focal_px) {
   pf_camera_t camera{};
   camera.model = PF_CAMERA_DIVISION;  // with one number it follows lenses from narrow to wide
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = focal_px;
-  camera.cx = 0.5 * (width - 1);
-  camera.cy = 0.5 * (height - 1);
+  camera.width = pixels.width;
+  camera.height = pixels.height;
+  camera.fx = focal_px;
+  camera.fy = focal_px * pixels.fy / pixels.fx;
+  camera.cx = 0.5 * (pixels.width - 1);
+  camera.cy = 0.5 * (pixels.height - 1);
   camera.sigma_focal = kSigmaFocal;
   camera.sigma_aspect = kSigmaAspect;
-  camera.sigma_centre_px = kSigmaCentre * width;
+  camera.sigma_centre_px = kSigmaCentre * pixels.width;
   camera.sigma_distortion[0] = kSigmaBend / (focal_px * focal_px);
   return camera;
 }
@@ -137,7 +148,7 @@ bool search_focal(const Options& options, const std::function<bool()>& interrupt
   for (const double factor : kFactors) {
     FocalTrial trial;
     trial.start_px = factor * middle_px;
-    trial_options.guess = guess_camera(info.camera.width, info.camera.height, trial.start_px);
+    trial_options.guess = guess_camera(info.camera, trial.start_px);
     if (!track(trial_options, frames, interrupted, trial, error)) {
       return false;
     }
@@ -145,16 +156,33 @@ bool search_focal(const Options& options, const std::function<bool()>& interrupt
   }
   order(guess.trials);
   const FocalTrial& best = guess.trials.front();
-  const bool found = best.end_px > 0.0;
-  double squares = 0.0;
-  for (size_t i = 1; i < kCompared && found; ++i) {
-    const double end_px = guess.trials[i].end_px > 0.0 ? guess.trials[i].end_px : guess.trials[i].start_px;
-    squares += (end_px - best.end_px) * (end_px - best.end_px);
-  }
-  const double focal_px = found ? best.end_px : middle_px;
-  guess.camera = guess_camera(info.camera.width, info.camera.height, focal_px);
-  guess.spread_px = found ? std::sqrt(squares / static_cast<double>(kCompared - 1)) : kSigmaFocal * focal_px;
   guess.seconds = static_cast<double>(frames) / info.rate_hz;
+  guess.camera = guess_camera(info.camera, middle_px);
+  guess.spread_px = kSigmaFocal * middle_px;
+  if (!is_done(best)) {
+    return true;
+  }
+  double squares = 0.0;
+  for (size_t i = 1; i < kCompared; ++i) {
+    const double away_px = end_px(guess.trials[i]) - best.end.fx;
+    squares += away_px * away_px;
+  }
+  guess.spread_px = std::sqrt(squares / static_cast<double>(kCompared - 1));
+  guess.camera = guess_camera(info.camera, best.end.fx);
+  if (options.backend != PF_BACKEND_FILTER) {
+    return true;
+  }
+  // The filter linearises once, so it begins where the window ends that begins there: with the whole lens, as well known as it is.
+  FocalTrial again;
+  trial_options.guess = guess.camera;
+  if (!track(trial_options, frames, interrupted, again, error)) {
+    return false;
+  }
+  if (is_done(again)) {
+    guess.camera = again.end;
+    guess.sigma_px = std::sqrt(again.covariance[0]);
+    set_sigmas(guess.camera, again.covariance, std::hypot(guess.sigma_px, guess.spread_px));
+  }
   return true;
 }
 
@@ -163,23 +191,26 @@ std::string describe(const FocalGuess& guess) {
   const double focal_px = guess.camera.fx;
   const auto [low, high] =
       std::minmax_element(guess.trials.begin(), guess.trials.end(),
-                          [](const FocalTrial& a, const FocalTrial& b) { return a.end_px < b.end_px; });
+                          [](const FocalTrial& a, const FocalTrial& b) { return end_px(a) < end_px(b); });
   std::snprintf(
       text, sizeof(text),
       "no calibration: of %zu focal lengths, tried over the first %.1f s, the most likely one ends at %.1f px "
       "(%.1f degrees across), all of them at %.1f to %.1f px",
-      guess.trials.size(), guess.seconds, focal_px, degrees_across(focal_px, guess.camera.width), low->end_px,
-      high->end_px);
+      guess.trials.size(), guess.seconds, focal_px, degrees_across(focal_px, guess.camera.width), end_px(*low),
+      end_px(*high));
   return text;
 }
 
-double focal_sigma_px(const pf_slam_t* slam, const FocalGuess& guess) {
+pf_camera_t found_camera(const pf_slam_t* slam, const FocalGuess& guess, double& sigma_px) {
   pf_camera_t camera{};
   double covariance[100];
   if (pf_get_camera(slam, &camera, covariance) != PF_OK || camera.estimate != PF_CAMERA_ESTIMATE) {
-    return -1.0;
+    sigma_px = -1.0;
+    return camera;
   }
-  return std::sqrt(covariance[0] + guess.spread_px * guess.spread_px);
+  sigma_px = std::hypot(std::max(std::sqrt(covariance[0]), guess.sigma_px), guess.spread_px);
+  set_sigmas(camera, covariance, sigma_px);
+  return camera;
 }
 
 std::string describe_focal(const pf_camera_t& camera, double sigma_px) {

@@ -426,14 +426,15 @@ std::string Run::why_nothing_was_tracked() const {
 
 /// The last words on a source without a calibration: what was found, and where it was written.
 void Run::tell_focal() {
-  const double sigma_px = guess_ != nullptr ? focal_sigma_px(session_.slam(), *guess_) : -1.0;
+  if (guess_ == nullptr) {
+    return;
+  }
+  double sigma_px = -1.0;
+  const pf_camera_t camera = found_camera(session_.slam(), *guess_, sigma_px);
   if (sigma_px < 0.0) {
     return;
   }
-  pf_camera_t camera{};
-  pf_get_camera(session_.slam(), &camera, nullptr);
   std::printf("%s\n", describe_focal(camera, sigma_px).c_str());
-  camera.sigma_focal = std::min(sigma_px / camera.fx, 0.2);
   char message[PF_SEQUENCE_MESSAGE] = "";
   std::string error;
   const std::string path = outputs_.path("calib_found.yaml");

@@ -1,6 +1,8 @@
 #include "calibration.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "file.h"
@@ -20,6 +22,33 @@ double read_readout(const Fields& fields) {
     fields.refuse_field("readout_s", "is " + format_number(readout) + "; a rolling shutter takes 0 to 0.2 s");
   }
   return readout;
+}
+
+/// Numbers that images as a camera gives them are not likely to have, in one line each.
+void note_unlikely(const Fields& fields, Calibration& calibration) {
+  constexpr double kUnlikely = 0.1;  ///< of the ratio of fx and fy to 1, and of the centre to the middle in widths
+  const pf_camera_t& camera = calibration.camera;
+  char text[320];
+  if (std::fabs(camera.fx / camera.fy - 1.0) > kUnlikely) {
+    std::snprintf(text, sizeof(text),
+                  ": fx %.6g and fy %.6g differ by %.1f %%, as where images were scaled to another form or pixels are "
+                  "not square; is it the calibration of these images?",
+                  camera.fx, camera.fy, 100.0 * std::fabs(camera.fx / camera.fy - 1.0));
+    calibration.notes.push_back(fields.file() + text);
+  }
+  const double most_px = kUnlikely * camera.width;
+  const auto is_off = [&](double x, double y) {
+    return std::fabs(x - 0.5 * camera.width) > most_px || std::fabs(y - 0.5 * camera.height) > most_px;
+  };
+  if (is_off(camera.cx, camera.cy)) {
+    std::snprintf(
+        text, sizeof(text),
+        ": the principal point %.6g, %.6g is far from the middle of %d x %d px, as in images that were cut out "
+        "of larger ones; %s",
+        camera.cx, camera.cy, camera.width, camera.height,
+        is_off(camera.cy, camera.cx) ? "is it the calibration of these images?" : "are cx and cy exchanged?");
+    calibration.notes.push_back(fields.file() + text);
+  }
 }
 
 /// How well the numbers are known. Where the file says nothing, what is typical: focal lengths within 1 %, one against the other within
@@ -101,6 +130,9 @@ Calibration read_fields(const Fields& fields, const Asked& asked) {
   calibration.camera.readout_s = read_readout(settings);
   calibration.camera.timestamps = read_timestamps(settings);
   read_sigmas(settings, calibration.camera);
+  if (calibration.camera.width > 0) {
+    note_unlikely(fields, calibration);
+  }
   if (!asked.camera.empty() && calibration.camera_name.empty()) {
     refuse(fields.file() + ": holds one camera, which has no name to choose it by; leave --camera away");
   }

@@ -20,10 +20,16 @@ constexpr size_t kMinFrames = 2;
 /// A film that ends so much earlier than it says itself is cut off: seconds and intervals between frames, whichever is more.
 constexpr double kMissingS = 0.5, kMissingFrames = 5.0;
 
-struct Answer {
+struct Packets {
   std::vector<int64_t> t_ns;
   size_t frames = 0;  ///< with or without a time
+};
+
+struct Answer : Packets {                ///< of the first film in the file
+  std::map<std::string, Packets> films;  ///< by the index of their stream
   std::map<std::string, std::string> stream, format;
+
+  bool has_film() const { return stream.count("width") != 0; }
 };
 
 std::map<std::string, std::string> fields_of(std::string_view line) {
@@ -46,7 +52,7 @@ double number(const std::map<std::string, std::string>& fields, const char* name
   return found != fields.end() && parse_double(found->second, value) ? value : 0.0;
 }
 
-/// Lines of ffprobe's compact form: "packet|pts_time=0.033333|flags=K_".
+/// Lines of ffprobe's compact form: "packet|stream_index=0|pts_time=0.033333|flags=K_".
 void parse_line(std::string_view line, Answer& answer) {
   const auto begins = [&](std::string_view word) { return line.substr(0, word.size()) == word; };
   if (begins("packet|")) {
@@ -55,11 +61,13 @@ void parse_line(std::string_view line, Answer& answer) {
     if (flags != fields.end() && flags->second.find('D') != std::string::npos) {
       return;  // the film says that it is not shown
     }
-    ++answer.frames;
+    const auto index = fields.find("stream_index");
+    Packets& film = answer.films[index != fields.end() ? index->second : ""];
+    ++film.frames;
     const auto time = fields.find("pts_time");
     int64_t t_ns = 0;
     if (time != fields.end() && parse_seconds(time->second, t_ns)) {
-      answer.t_ns.push_back(t_ns);
+      film.t_ns.push_back(t_ns);
     }
   } else if (begins("stream|") && answer.stream.empty()) {
     answer.stream = fields_of(line);
@@ -78,10 +86,15 @@ Answer ask(Program& program, const fs::path& path) {
       parse_line(std::string_view(&*begin, static_cast<size_t>(end - begin)), answer);
     }
     bytes.erase(bytes.begin(), begin);
-    if (bytes.size() >= kMaxAnswer || answer.frames > kMaxAnswer / sizeof(int64_t)) {
+    size_t frames = 0;
+    for (const auto& film : answer.films) {
+      frames += film.second.frames;
+    }
+    if (bytes.size() >= kMaxAnswer || frames > kMaxAnswer / sizeof(int64_t)) {
       refuse(path.string() + ": has more frames than any film; is it one?");
     }
   }
+  static_cast<Packets&>(answer) = answer.films[answer.stream["index"]];
   std::sort(answer.t_ns.begin(), answer.t_ns.end());
   return answer;
 }
@@ -93,8 +106,12 @@ bool is_mp4(const fs::path& path) {
   return kind == "ftyp" || kind == "moov" || kind == "mdat" || kind == "wide" || kind == "free";
 }
 
-[[noreturn]] void refuse_film(const fs::path& path, const Program& program, bool has_stream) {
+[[noreturn]] void refuse_film(const fs::path& path, const Program& program, const Answer& answer) {
   const std::string said = program.last_words();
+  const bool has_stream = answer.has_film();
+  if (!has_stream && number(answer.format, "nb_streams") > 0.0) {
+    refuse(path.string() + ": holds sound or a cover picture, but no film; check the file");
+  }
   if (program.has_said("moov atom not found") || (is_mp4(path) && !has_stream)) {
     refuse(path.string() +
            ": has no index (moov), without which the frames of an MP4 or MOV cannot be found: its recording was cut "
@@ -141,23 +158,38 @@ std::string missing_end(const Answer& answer, const Program& program, double int
   return "";
 }
 
-std::string doubts_of(const Answer& answer, const Program& program, const fs::path& path, double interval_s) {
-  std::string doubts;
+/// Width of a pixel by its height, before any rotation: "4:3"; 1 where the film does not say it.
+double pixel_aspect(const std::map<std::string, std::string>& stream) {
+  const auto found = stream.find("sample_aspect_ratio");
+  int across = 0, down = 0;
+  const bool says = found != stream.end() && std::sscanf(found->second.c_str(), "%d:%d", &across, &down) == 2;
+  return says && across > 0 && down > 0 ? static_cast<double>(across) / down : 1.0;
+}
+
+std::vector<std::string> doubts_of(const Answer& answer, const Program& program, double interval_s) {
+  std::vector<std::string> doubts;
   const std::string missing = missing_end(answer, program, interval_s);
   if (!missing.empty()) {
     char text[96];
     const double last_s = answer.t_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(answer.t_ns.back());
-    std::snprintf(text, sizeof(text), ": is cut off after %zu frames, at %.3f s (", answer.frames, last_s);
-    doubts = path.string() + text + missing + ")";
+    std::snprintf(text, sizeof(text), "is cut off after %zu frames, at %.3f s (", answer.frames, last_s);
+    doubts.push_back(text + missing + ")");
   }
   const auto order = answer.stream.find("field_order");
   if (order != answer.stream.end() && order->second.size() == 2) {
-    doubts += (doubts.empty() ? path.string() + ": " : "; ") + std::string("is interlaced (") + order->second +
-              "): every other row of a frame is of another time; deinterlace it first (ffmpeg -vf bwdif)";
+    doubts.push_back("is interlaced (" + order->second +
+                     "): every other row of a frame is of another time; deinterlace it first (ffmpeg -vf bwdif)");
   }
   if (answer.t_ns.size() < answer.frames) {
-    doubts += (doubts.empty() ? path.string() + ": " : "; ") +
-              std::string("does not say the times of all its frames; they are then counted at its frame rate");
+    doubts.emplace_back("does not say the times of all its frames; they are then counted at its frame rate");
+  }
+  if (answer.films.size() > 1) {
+    doubts.push_back("holds " + std::to_string(answer.films.size()) +
+                     " films; the first is taken (ffmpeg -i FILM -map 0:v:1 -c copy SECOND.mkv takes out the second)");
+  }
+  if (pixel_aspect(answer.stream) != 1.0) {
+    doubts.push_back("has pixels of " + answer.stream.at("sample_aspect_ratio") +
+                     ", width to height: a calibration must be of these pixels, with another fx than fy");
   }
   return doubts;
 }
@@ -185,12 +217,14 @@ void require_film_file(const fs::path& path) {
 
 FilmFacts probe_film(const fs::path& path) {
   require_film_file(path);
-  Program program({"ffprobe", "-v", "warning", "-protocol_whitelist", "file", "-select_streams", "V:0", "-show_entries",
-                   "packet=pts_time,flags:stream=field_order,duration:format=start_time,duration,nb_streams", "-of",
-                   "compact", "-i", "file:" + path.string()});
+  Program program({"ffprobe", "-v", "warning", "-protocol_whitelist", "file", "-select_streams", "V", "-show_entries",
+                   "packet=stream_index,pts_time,flags:"
+                   "stream=index,width,height,sample_aspect_ratio,field_order,duration:"
+                   "format=start_time,duration,nb_streams",
+                   "-of", "compact", "-i", "file:" + path.string()});
   const Answer answer = ask(program, path);
-  if (answer.stream.empty() || answer.frames == 0) {
-    refuse_film(path, program, !answer.stream.empty());
+  if (!answer.has_film() || answer.frames == 0) {
+    refuse_film(path, program, answer);
   }
   if (answer.frames < kMinFrames) {
     refuse(path.string() + ": has a single frame; a film has at least two");
@@ -199,7 +233,12 @@ FilmFacts probe_film(const fs::path& path) {
   facts.t_ns = answer.t_ns;
   const double interval_s = median_interval_s(answer.t_ns);
   facts.rate_hz = interval_s > 0.0 ? 1.0 / interval_s : 0.0;
-  facts.warning = doubts_of(answer, program, path, interval_s);
+  facts.size = {static_cast<int32_t>(number(answer.stream, "width")),
+                static_cast<int32_t>(number(answer.stream, "height"))};
+  facts.pixel_aspect = pixel_aspect(answer.stream);
+  for (const std::string& doubt : doubts_of(answer, program, interval_s)) {
+    facts.notes.push_back(path.string() + ": " + doubt);
+  }
   if (facts.t_ns.size() < answer.frames) {  // counted, so that there is one for each frame
     const double rate_hz = facts.rate_hz > 0.0 ? facts.rate_hz : 30.0;
     facts.t_ns.clear();

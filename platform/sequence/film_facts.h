@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration.h"
 #include "file.h"
 
 namespace pf::sequence {
@@ -14,8 +15,10 @@ namespace pf::sequence {
 struct FilmFacts {
   std::vector<int64_t>
       t_ns;  ///< of its frames, in their order; they may turn out to be fewer, and times are rounded to microseconds
-  double rate_hz = 0.0;  ///< median; 0 where it cannot be told
-  std::string warning;   ///< one line, or empty
+  double rate_hz = 0.0;            ///< median; 0 where it cannot be told
+  ImageSize size;                  ///< as stored; a rotation may exchange them
+  double pixel_aspect = 1.0;       ///< width of a pixel as stored by its height
+  std::vector<std::string> notes;  ///< what its user may not know, one line each
 };
 
 /// Asks ffprobe. Throws ReadError that names the file and says why it cannot be used as a film.

@@ -12,6 +12,7 @@
 
 #include "film_facts.h"
 #include "find_calibration.h"
+#include "frame_gaps.h"
 #include "frame_names.h"
 #include "image_folder.h"
 #include "image_list.h"
@@ -138,9 +139,10 @@ void count_frames(Folder& folder, const fs::path& images, const std::string& pat
   }
   char text[64];
   std::snprintf(text, sizeof(text), "%g frames per second", rate);
-  folder.notes.insert(
-      folder.notes.begin(),
-      folder.root.string() + ": no times.txt; the images are taken in the order of their names at " + text);
+  const std::string missing = missing_numbers(names);
+  folder.notes.insert(folder.notes.begin(), folder.root.string() +
+                                                ": no times.txt; the images are taken in the order of their names at " +
+                                                text + (missing.empty() ? "" : "; " + missing));
 }
 
 void open_images(Folder& folder, const std::string& calibration, const std::string& pattern) {
@@ -256,9 +258,9 @@ void open_film(Folder& folder, const std::string& calibration) {
   }
   folder.is_film = true;
   folder.film_rate_hz = facts.rate_hz;
-  if (!facts.warning.empty()) {
-    folder.notes.push_back(facts.warning);
-  }
+  folder.film_size = facts.size;
+  folder.pixel_aspect = facts.pixel_aspect;
+  folder.notes.insert(folder.notes.end(), facts.notes.begin(), facts.notes.end());
 }
 
 }  // namespace

@@ -21,6 +21,8 @@ struct Folder {
   std::vector<std::string> notes;  ///< what had to be assumed, one line each, without those of the calibration
   bool is_film = false;            ///< root is a file, and so is the path of every frame
   double film_rate_hz = 0.0;       ///< 0: not known
+  ImageSize film_size;             ///< as stored; a rotation may exchange them
+  double pixel_aspect = 1.0;       ///< of a film as stored: width of a pixel by its height
 };
 
 /// Lists what "kind:DIR" or "video:FILE" names, or "images:DIR/PATTERN" with a *; decodes no image. Throws ReadError.

@@ -9,9 +9,6 @@
 
 namespace pf::sequence {
 
-namespace {
-
-/// The number that a name ends with before its extension, with a decimal point where there is one: "rgb_12.05.png" to "12.05".
 std::string_view number_of(const std::string& name) {
   const size_t end = name.rfind('.');
   size_t begin = end;
@@ -28,6 +25,8 @@ std::string_view number_of(const std::string& name) {
   begin += begin < end && name[begin] == '.' ? 1 : 0;
   return std::string_view(name).substr(begin, end - begin);
 }
+
+namespace {
 
 /// Whether digits behind points are fractions: all as many, or none with a zero at its end that print() would have dropped. Otherwise
 /// they count, as 1.9, 1.10, 1.11.

@@ -14,6 +14,7 @@
 #include "decode.h"
 #include "film.h"
 #include "folder.h"
+#include "frame_gaps.h"
 #include "imu.h"
 #include "imu_model.h"
 #include "levels.h"
@@ -230,13 +231,15 @@ bool read_film_frame(pf_sequence& sequence, int64_t index, pf_image_t& image, ch
   return true;
 }
 
-/// A camera of which only the size is known.
-pf_camera_t uncalibrated_camera(pf::sequence::ImageSize size) {
+/// A camera of which only the size is known, and the form of its pixels.
+pf_camera_t uncalibrated_camera(pf::sequence::ImageSize size, const pf::sequence::Folder& folder) {
+  const bool rotated = folder.is_film && size.width == folder.film_size.height && size.width != size.height;
   pf_camera_t camera{};
   camera.model = PF_CAMERA_PINHOLE;
   camera.width = size.width;
   camera.height = size.height;
-  camera.fx = camera.fy = camera.width;
+  camera.fx = camera.width;
+  camera.fy = rotated ? camera.fx / folder.pixel_aspect : camera.fx * folder.pixel_aspect;
   camera.cx = 0.5 * (camera.width - 1);
   camera.cy = 0.5 * (camera.height - 1);
   return camera;
@@ -290,13 +293,15 @@ int pf_open_sequence_of(const char* source, const char* calibration, const char*
       opened->film = std::make_unique<pf::sequence::Film>(folder.root);
     }
     if (or_empty(calibration) == PF_SEQUENCE_UNCALIBRATED) {
-      folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
+      folder.calibration.camera = uncalibrated_camera(size_of_images(*opened), folder);
     } else if (folder.calibration.camera.width == 0) {
       folder.asked.images = size_of_images(*opened);
       pf::sequence::read_calibration_of(folder);
     }
     std::vector<std::string> notes = folder.notes;
     notes.insert(notes.end(), folder.calibration.notes.begin(), folder.calibration.notes.end());
+    const std::string gap = pf::sequence::longest_gap(folder.frames);
+    notes.push_back(gap.empty() ? "" : opened->root + ": " + gap);
     look_at_some(*opened, notes);
     for (const std::string& line : notes) {
       opened->warning += (opened->warning.empty() || line.empty() ? "" : "\n") + line;

@@ -84,6 +84,26 @@ static void test_hint_should_be_given_only_when_it_would_be_accepted() {
   TEST_ASSERT_NULL_MESSAGE(std::strstr(broken.c_str(), "remove"), broken.c_str());
 }
 
+static void test_numbers_that_no_lens_is_likely_to_have_should_get_a_note() {
+  const struct {
+    const char* numbers;
+    const char* part;
+  } doubted[] = {{"200, 201, 120, 160", "are cx and cy exchanged?"},
+                 {"200, 201, 310, 120", "is it the calibration of these images?"},
+                 {"200, 201, 0, 0", "the principal point 0, 0 is far from the middle of 320 x 240 px"},
+                 {"200, 266, 160, 120", "fx 200 and fy 266 differ by 24.8 %"},
+                 {"200, 150, 160, 120", "pixels are not square"}};
+  for (const auto& one : doubted) {
+    camera_of(replaced(kEuroc, "200, 201, 160, 120", one.numbers), nullptr, one.part);
+  }
+  const ReadCalibration exchanged = parse(replaced(kEuroc, "200, 201, 160, 120", "160, 120, 200, 201"));
+  TEST_ASSERT_EQUAL_INT(0, exchanged.result);
+  TEST_ASSERT_EQUAL_size_t(2, lines_of(exchanged.message).size());
+  for (const char* likely : {"200, 201, 160, 120", "517.3, 516.5, 170.6, 127.3", "200, 201.9, 140, 140"}) {
+    TEST_ASSERT_EQUAL_STRING("", parse(replaced(kEuroc, "200, 201, 160, 120", likely)).message);
+  }
+}
+
 static void test_notes_should_each_have_a_line() {
   const std::string text = "lens: 8 mm\n" + replaced(kChain, "  camera_model", "  serial: 12\n  camera_model");
   const ReadCalibration read = parse(text);
@@ -233,6 +253,7 @@ int main() {
   RUN_TEST(test_field_should_be_refused_when_it_may_change_what_others_mean);
   RUN_TEST(test_field_should_be_ignored_with_a_note_when_its_value_changes_nothing);
   RUN_TEST(test_hint_should_be_given_only_when_it_would_be_accepted);
+  RUN_TEST(test_numbers_that_no_lens_is_likely_to_have_should_get_a_note);
   RUN_TEST(test_notes_should_each_have_a_line);
   RUN_TEST(test_notes_should_be_whole_lines_and_a_count_when_they_do_not_fit);
   RUN_TEST(test_sequence_should_tell_its_own_notes_and_those_of_its_calibration);

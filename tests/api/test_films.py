@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -124,6 +125,34 @@ def turned(root, mkv, calibration):
     track(f"video:{turned_film}", portrait, root / "h")
 
 
+def odd_contents(root, mkv, folder, calibration):
+    """What a file holds beside one film with square pixels, or in its place."""
+    notes = {}
+    for name, words in (("anamorphic.mkv", ("-c", "copy", "-aspect", "16:9")), ("two.mkv", ("-map", "0", "-map", "0", "-c", "copy")),
+                        ("cover.mp4", ("-i", folder / "cover.jpg", "-map", "0", "-map", "1", "-c", "copy", "-disposition:v:1", "attached_pic"))):
+        if name == "cover.mp4":
+            ffmpeg("-i", mkv, "-frames:v", "1", folder / "cover.jpg")
+        ffmpeg("-i", mkv, *words, root / name)
+        notes[name] = track(f"video:{root / name}", calibration, root / "k")
+        require(len((root / "k" / "frames.csv").read_text().splitlines()) == FRAMES + 1, f"{name}: all frames of the first film")
+    require("pixels of 4:3, width to height" in notes["anamorphic.mkv"], f"pixels that are not square: {notes['anamorphic.mkv']}")
+    require("holds 2 films; the first is taken" in notes["two.mkv"], f"two films in a file: {notes['two.mkv']}")
+    require(notes["cover.mp4"] == "", f"a cover picture is no film: {notes['cover.mp4']}")
+    for sound in ("sound.mp4", "sound.wav"):
+        ffmpeg("-f", "lavfi", "-i", "sine=d=1", root / sound)
+        refused("sound alone", f"video:{root / sound}", [sound, "holds sound", "but no film"], calibration, "--out", root / "k")
+
+
+def pixels_of_a_film_without_calibration(root, mkv):
+    """Pixels that are half as wide as high have a focal length of twice as many of them across."""
+    film = root / "narrow.mkv"
+    ffmpeg("-i", mkv, "-vf", f"scale={2 * WIDTH}:{HEIGHT},setsar=1/2", "-c:v", "ffv1", film)
+    result = capture("--source", f"video:{film}", "--out", root / "l")
+    text = (root / "l" / "calib_found.yaml").read_text() if result.returncode == 0 else ""
+    fx, fy = (float(re.search(rf"{name}: ([\d.]+)", text)[1]) if text else 0.0 for name in ("fx", "fy"))
+    require(abs(fx - 2 * fy) < 0.02 * fx, f"fx {fx} and fy {fy} of pixels of 1:2: {result.stderr}")
+
+
 def odd_names(root, film, calibration):
     where = os.getcwd()
     os.chdir(root)
@@ -167,6 +196,8 @@ def main():
         cut_off(root, film, mkv, calibration)
         refusals(root, film, folder, calibration)
         turned(root, mkv, calibration)
+        odd_contents(root, mkv, folder, calibration)
+        pixels_of_a_film_without_calibration(root, mkv)
         odd_names(root, film, calibration)
         left_alone(root, film, calibration)
     if failures:

@@ -100,6 +100,7 @@ class Scenes(unittest.TestCase):
                 break
         for times, rates, line in (([0.5], [[0, 0, 0]], "whole nanoseconds"),
                                    ([10**12], [[0, 0]], "gyro: takes three numbers for each of the 1"),
+                                   (["10"], [[0, 0, 0]], "whole nanoseconds"),
                                    ([10**12, 2 * 10**12], [[0, 0, 0]], "for each of the 2")):
             with self.assertRaisesRegex((TypeError, ValueError), line):
                 slam.push_imu(times, rates, rates)
@@ -107,6 +108,26 @@ class Scenes(unittest.TestCase):
         self.assertGreater(slam.imu_report.samples, 150)
         self.assertEqual(len(slam.imu_samples), 64)
         self.assertEqual(slam.inertial.covariance.shape, (8, 8))
+
+    def test_dates_are_counted_in_nanoseconds(self):
+        config = planefold.Config(camera=planefold.Sim("desk").camera, imu=planefold.SimImu(planefold.Sim("desk")).options.model)
+        config.motion.model = planefold.MotionModel.INERTIAL
+        config.capacity.max_imu_samples = 64
+        for unit in ("us", "ms", "ns"):
+            slam = planefold.Slam(config)
+            dates = np.datetime64("2026-11-29T12:00:00", unit) + np.arange(4) * np.timedelta64(5, "ms")
+            slam.push_imu(dates, np.zeros((4, 3)), np.tile([0, 0, 9.81], (4, 1)))
+            first = 1_795_953_600 * 10**9
+            self.assertEqual([sample.t_ns for sample in slam.imu_samples], [first + 5_000_000 * number for number in range(4)])
+
+    def test_rectangles_are_whole_pixels(self):
+        config = python_package.desk(planefold)
+        config.capacity.mask = config.camera.width * config.camera.height
+        slam = planefold.Slam(config)
+        for given in ([(0.1, 0.1, 0.5, 0.5)], np.zeros((1, 4)), [("0", "0", "9", "9")]):
+            with self.assertRaisesRegex(TypeError, "whole pixels"):
+                slam.set_mask(rectangles=given)
+        slam.set_mask(rectangles=np.array([(0, 0, 9, 9)], np.uint8))
 
     def test_observations(self):
         slam = planefold.Slam(python_package.desk(planefold))

@@ -187,6 +187,47 @@ static void test_raw_thermal_images_should_be_stretched_with_a_note() {
   TEST_ASSERT_NULL_MESSAGE(std::strstr(opened.info.warning, "16 bits"), opened.info.warning);
 }
 
+static void test_missing_numbers_should_be_told_with_what_to_type() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  int level = 0;
+  std::string times = "# time [frames], name\n";
+  for (const int number : {0, 2, 4, 6, 12, 14, 16, 18}) {
+    folder.write(numbered("cam_%d.png", number), grey_png(static_cast<uint8_t>(level++)));
+    times += std::to_string(number) + " " + numbered("cam_%d.png", number) + "\n";
+  }
+  require_frames("images:" + folder.path(), 8, "2 numbers are missing in them (first behind cam_6.png)");
+  folder.write("times.txt", times);
+  require_frames("images:" + folder.path(), 8, "");
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NULL_MESSAGE(std::strstr(opened.info.warning, "missing"), opened.info.warning);
+  TEST_ASSERT_EQUAL_INT64(18 * (opened.read(1).t_ns / 2), opened.read(7).t_ns);
+  for (const char* form : {"%03d.png", "IMG_%d.png", "%d00.png"}) {
+    TemporaryFolder whole;
+    write_frames(whole, form, 12);
+    const Opened counted("images:" + whole.path());
+    TEST_ASSERT_NULL_MESSAGE(std::strstr(counted.info.warning, "missing"), counted.info.warning);
+  }
+}
+
+static void test_pause_of_a_recording_should_be_told_with_its_frame() {
+  TemporaryFolder folder;
+  write_frames(folder, "images/%04d.png", 12);
+  std::string even, paused;
+  for (int i = 0; i < 12; ++i) {
+    even += std::to_string(i * (i == 5 ? 0.0331 : 0.0333)) + numbered(" %04d.png\n", i);
+    paused += std::to_string(i * 0.0333 + (i < 7 ? 0.0 : 86400.0)) + numbered(" %04d.png\n", i);
+  }
+  folder.write("times.txt", even);
+  require_frames("images:" + folder.path(), 12, "");
+  const Opened opened("images:" + folder.path());
+  TEST_ASSERT_NULL_MESSAGE(std::strstr(opened.info.warning, "after the one before"), opened.info.warning);
+  folder.write("times.txt", paused);
+  require_frames("images:" + folder.path(), 12,
+                 "frame 7 comes 86400 s after the one before, where others come after 0.0333 s");
+  require_frames("images:" + folder.path(), 12, "begin with --skip 7 and end with --frames 7");
+}
+
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_files_of_other_systems_should_be_left_out_in_silence);
@@ -196,6 +237,8 @@ int main() {
   RUN_TEST(test_single_image_of_another_size_should_be_unusable_and_not_end_the_rest);
   RUN_TEST(test_numbers_of_fewer_bits_should_be_scaled_with_a_note);
   RUN_TEST(test_raw_thermal_images_should_be_stretched_with_a_note);
+  RUN_TEST(test_missing_numbers_should_be_told_with_what_to_type);
+  RUN_TEST(test_pause_of_a_recording_should_be_told_with_its_frame);
   return UNITY_END();
 }
 

@@ -51,6 +51,7 @@ def main():
         root = pathlib.Path(name)
         folder = make_folder(root, FRAMES)
         film = make_film(folder, root / "film.mkv", "-c:v", "libx264", "-crf", "15")
+        check(film, root / "f", "--backend", "filter")
         focal_px = check(film, root / "a")
         found = root / "a" / "calib_found.yaml"
         require(f"fx: {focal_px:.1f}"[:-2] in found.read_text(), "the camera that was found is written")

@@ -96,6 +96,22 @@ class CompareRuns(unittest.TestCase):
         compare_runs(*words)
         self.assertEqual(len(self.log.read_text().splitlines()), 4)
 
+    def test_films_should_be_compared_with_the_focal_length_of_the_calibration(self):
+        (self.folder / "films").mkdir()
+        (self.folder / "films" / "desk.mkv").write_text("made before")
+        (self.folder / "data" / "desk" / "calib.yaml").write_text("width: 320\nheight: 240\nfx: 200\nfy: 200\ncx: 160\ncy: 120\ndistortion_model: none\n")
+        self.program.write_text(self.program.read_text() + "print(f'focal length {203 + skip / 5} px, standard deviation 1.0 px (0.5 %): well known')\n")
+        code, out, errors = compare_runs("--data", self.folder / "data", "--films", self.folder / "films", "--out", self.folder / "out", "--only", "desk",
+                                         "--starts", "2", f"a={self.program}")
+        self.assertEqual((code, errors), (0, ""))
+        self.assertEqual(out.count("| +2.0 (+2.5) "), 2, out)     # 203 and 205 px for 200, with both back ends
+        self.assertEqual(out.count("| +4.0 (+5.0) "), 2, out)     # of their own standard deviations
+        self.assertEqual(out.count("| 2 of 2     | 2 of 2 "), 2, out)
+        self.assertIn(f"--source video:{self.folder}/films/desk.mkv --skip 10 --backend filter", self.log.read_text())
+        code, _, errors = compare_runs("--data", self.folder / "data", "--films", self.folder / "new", "--out", self.folder / "out", f"a={self.program}")
+        self.assertEqual((code, errors.count("\n")), (1, 1))      # the other sequence lists no frames
+        self.assertIn("make a film", errors)
+
     def test_show_should_put_two_folders_beside_each_other(self):
         for name in ("old", "new"):
             compare_runs("--data", self.folder / "data", "--out", self.folder / name, "--starts", "1", f"a={self.program}")

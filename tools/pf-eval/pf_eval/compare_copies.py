@@ -70,42 +70,42 @@ def measure(folder, copy):
     return row
 
 
+def kept_run(command, folder, measure):
+    """Runs command, unless what the same program made from it is in folder. measure(its output) gives the values. {"failure", "values"}"""
+    kept = folder.with_suffix(".json")
+    stamp = {"command": command, "built_ns": os.stat(command[0]).st_mtime_ns}
+    known = json.loads(kept.read_text()) if kept.exists() else {}
+    if {name: known.get(name) for name in stamp} == stamp:
+        return {name: known[name] for name in ("failure", "values")}
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    ended = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False, timeout=RUN_TIMEOUT)
+    said = ended.stderr.strip().splitlines()
+    if ended.returncode == 2:
+        raise Refused(said[-1] if said else f"{command[0]}: refused its command line")
+    row = {"failure": "" if ended.returncode == 0 else (said[-1] if said else f"ended with {ended.returncode}")}
+    try:
+        row["values"] = measure(ended.stdout)  # a run that was lost at its end has poses all the same
+    except (Refused, OSError):
+        row["values"] = {}
+    kept.write_text(json.dumps(stamp | row))
+    return row
+
+
 def run_one(job, out):
     (label, program, words), backend, (sequence, kind), copy, start = job
     folder = out / re.sub(r"[^A-Za-z0-9_.-]+", "_", label) / backend / f"{sequence}.{kind}" / str(start)
     command = [program, "--source", f"images:{copy}", "--skip", str(start), "--backend", backend, "--headless", "--no-film", "--quiet", "--out", str(folder)]
     if (copy / "target.yaml").exists() and start == 0 and "--start" not in words:
         command += ["--start", f"target:{copy / 'target.yaml'}"]
-    command += words
-    row = {"variant": label, "backend": backend, "sequence": sequence, "kind": kind, "start": start, "failure": "", "values": {}}
-    kept = folder.with_suffix(".json")
-    stamp = {"command": command, "built_ns": os.stat(program).st_mtime_ns}
-    known = json.loads(kept.read_text()) if kept.exists() else {}
-    if {name: known.get(name) for name in stamp} == stamp:
-        return dict(row, failure=known["failure"], values=known["values"])
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    ended = subprocess.run(command, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False, timeout=RUN_TIMEOUT)
-    said = ended.stderr.strip().splitlines()
-    if ended.returncode == 2:
-        raise Refused(said[-1] if said else f"{program}: refused its command line")
-    row["failure"] = "" if ended.returncode == 0 else (said[-1] if said else f"ended with {ended.returncode}")
-    try:
-        row["values"] = measure(folder, copy)  # a run that was lost at its end has poses all the same
-    except (Refused, OSError):
-        row["values"] = {}
-    kept.write_text(json.dumps(dict(stamp, failure=row["failure"], values=row["values"])))
-    return row
+    row = {"variant": label, "backend": backend, "sequence": sequence, "kind": kind, "start": start}
+    return row | kept_run(command + words, folder, lambda _: measure(folder, copy))
 
 
-def run_all(options, variants):
-    copies = find_copies(options.copies, options.only)
-    out = pathlib.Path(options.out)
-    out.mkdir(parents=True, exist_ok=True)
-    jobs = [(variant, backend, name, path, 10 * start) for name, path in copies.items() for start in range(options.starts)
-            for backend in BACKENDS for variant in variants]
+def in_turn(jobs, run, workers, out, name):
+    """The rows that run(job, out) gives for all jobs, which the file name in out keeps too."""
     rows = []
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        waiting = [pool.submit(run_one, job, out) for job in jobs]
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        waiting = [pool.submit(run, job, out) for job in jobs]
         try:
             for done, future in enumerate(waiting, 1):
                 rows.append(future.result())
@@ -114,8 +114,17 @@ def run_all(options, variants):
         finally:
             for future in waiting:
                 future.cancel()
-    (out / "copies.json").write_text(json.dumps(rows, indent=1) + "\n")
+    (out / name).write_text(json.dumps(rows, indent=1) + "\n")
     return rows
+
+
+def run_all(options, variants):
+    copies = find_copies(options.copies, options.only)
+    out = pathlib.Path(options.out)
+    out.mkdir(parents=True, exist_ok=True)
+    jobs = [(variant, backend, name, path, 10 * start) for name, path in copies.items() for start in range(options.starts)
+            for backend in BACKENDS for variant in variants]
+    return in_turn(jobs, run_one, options.jobs, out, "copies.json")
 
 
 def line_of(rows):

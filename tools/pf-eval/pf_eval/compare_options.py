@@ -10,6 +10,7 @@ interleaved, and prints a table per sequence: the median over the starts, and th
   tools/compare-runs --out DIR [VARIANT ...] [--starts N] [--data DIR] [--only NAME]
   tools/compare-runs --show DIR [DIR]
   tools/compare-runs --copies COPIES --out DIR [VARIANT ...]
+  tools/compare-runs --films FILMS --out DIR [VARIANT ...]
 
 VARIANT is "NAME=PROGRAM [options]" in one word, for example
   now=build/release/bin/pf-capture  "no planes=build/release/bin/pf-capture --no-planes"
@@ -23,7 +24,9 @@ means over tracked frames from frame 60 on; a run that failed is worse than any,
 "none". With --copies: runs on the copies of tools/copies, with both back ends (so no --backend among the options; a
 VARIANT may be "NAME=FOLDER" that holds pf-capture), one table by kind: share of frames tracked, runs below 90 %, maps a run,
 frames lost, and, where there is truth, frames of the largest map that have turned since its first by more than 5 degrees and
-5 of their own sigmas from it, and the rotation error after alignment, median (largest). Runs that are already in DIR, made by the same program, are not made again.
+5 of their own sigmas from it, and the rotation error after alignment, median (largest). With --films: each sequence as a lossless
+film without its calibration (FILMS keeps the films), with both back ends: share of frames tracked, median (least), and the focal
+length that is found against that of calib.yaml, in percent and in its own standard deviations, median (largest). Runs that are already in DIR, made by the same program, are not made again.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
@@ -35,7 +38,9 @@ def arguments(words):
     parser.add_argument("--out", metavar="DIR", help="folder for the runs")
     parser.add_argument("--show", metavar="DIR", nargs="+", help="print the tables of one or two such folders; runs nothing")
     parser.add_argument("--copies", metavar="DIR", help="folder that tools/copies made")
-    parser.add_argument("--starts", metavar="N", type=int, help="starts per sequence (default 5; with --copies 1, and each 10 frames after the other)")
+    parser.add_argument("--films", metavar="DIR", help="folder for films of the sequences; ffmpeg makes those that are missing")
+    parser.add_argument("--starts", metavar="N", type=int,
+                        help="starts per sequence (default 5; with --copies 1; with --copies and --films each 10 frames after the other)")
     parser.add_argument("--data", metavar="DIR", help="folder of the sequences (default: $PLANEFOLD_DATA)")
     parser.add_argument("--only", metavar="NAME", action="append", help="a sequence to run, may be repeated (default: all)")
     parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1; more make times worthless)")
@@ -44,8 +49,10 @@ def arguments(words):
         parser.error("give either --out or --show")
     if options.show and (options.variants or len(options.show) > 2):
         parser.error("--show takes one or two folders and no variants")
-    if options.copies and options.show:
-        parser.error("--copies runs, and --show runs nothing")
+    if (options.copies or options.films) and options.show:
+        parser.error("--copies and --films run, and --show runs nothing")
+    if options.copies and options.films:
+        parser.error("give one of --copies and --films")
     options.starts = options.starts if options.starts is not None else 1 if options.copies else 5
     if options.starts < 1 or options.jobs < 1:
         parser.error("--starts and --jobs must be at least 1")

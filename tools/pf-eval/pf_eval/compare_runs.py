@@ -10,7 +10,7 @@ import statistics
 import subprocess
 import sys
 
-from . import Refused, compare_copies
+from . import Refused, compare_copies, compare_films
 from .camera import camera_of_run
 from .compare_options import arguments
 from .corners import compare_corners, read_target
@@ -213,6 +213,9 @@ def main(words=None):
     try:
         if options.copies:
             print(compare_copies.table(compare_copies.run_all(options, read_variants(options.variants))))
+            return 0
+        if options.films:
+            print(compare_films.table(compare_films.run_all(options, read_variants(options.variants), find_sequences(options))))
             return 0
         if options.show:
             labels = [""] if len(options.show) == 1 else [pathlib.Path(folder).name + ": " for folder in options.show]

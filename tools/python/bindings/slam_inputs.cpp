@@ -19,11 +19,20 @@ nb::object made_of(const ArrayLike& given, const char* type) {
   return nb::module_::import_("numpy").attr("ascontiguousarray")(given.given, type);
 }
 
+/// How NumPy calls what the numbers are: i and u whole, f floating, M dates, m times between dates.
+std::string kind_of(const nb::object& array) { return nb::cast<std::string>(array.attr("dtype").attr("kind")); }
+
+/// Dates are counted in their own unit, often microseconds: they become nanoseconds first.
 Times times_of(const ArrayLike& given) {
-  const nb::object kind = nb::module_::import_("numpy").attr("asarray")(given.given).attr("dtype").attr("kind");
+  nb::object array = nb::module_::import_("numpy").attr("asarray")(given.given);
+  const std::string kind = kind_of(array);
+  if (kind == "M" || kind == "m") {
+    array = array.attr("astype")(kind + "8[ns]");
+  } else if (kind != "i" && kind != "u") {
+    refuse_seconds();
+  }
   Times times;
-  if (nb::cast<std::string>(kind) == "f") refuse_seconds();
-  if (!nb::try_cast<Times>(made_of(given, "int64"), times)) throw nb::value_error("t_ns: takes a list of times");
+  if (!nb::try_cast<Times>(made_of({array}, "int64"), times)) throw nb::value_error("t_ns: takes a list of times");
   return times;
 }
 
@@ -59,6 +68,10 @@ std::vector<pf_rectangle_t> rectangles_of(const ArrayLike& given) {
   using Quadruples = nb::ndarray<const int32_t, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
   std::vector<pf_rectangle_t> rectangles;
   if (given.given.is_none()) return rectangles;
+  const nb::object array = nb::module_::import_("numpy").attr("asarray")(given.given);
+  if (nb::cast<size_t>(array.attr("size")) == 0) return rectangles;
+  const std::string kind = kind_of(array);
+  if (kind != "i" && kind != "u") throw nb::type_error("rectangles: takes whole pixels");
   Quadruples rows;
   if (!nb::try_cast<Quadruples>(made_of(given, "int32"), rows)) {
     throw nb::value_error("rectangles: takes x, y, width and height of each");
