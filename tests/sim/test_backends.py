@@ -58,11 +58,10 @@ def test_gaps_should_be_judged_for_the_window_one_by_one(folder):
 
 def test_what_the_window_cannot_do_should_be_refused_by_name():
     window = ("--backend", "window")
-    expect_refusal(["--backend window", "refined", "walls"], "box", *window, "--cases", "points", "refined")
+    expect_refusal(["--backend window", "ungated", "patches"], "box", *window, "--cases", "points", "ungated")
     expect_refusal(["--backend window", "--geometric"], "box", *window, "--geometric")
     expect_refusal(["--backend window", "--no-points"], "box", *window, "--no-points")
     expect_refusal(["--backend window", "--gross"], "box", *window, "--gross", 0.1)
-    expect_refusal(["--backend window", "exact", "walls"], "street", *window, "--cases", "exact")
     expect_refusal(["--backend window", "--no-points"], "street", *window, "--no-points")
     expect_refusal(["--backend window", "--max-state-dim"], "street", *window, "--max-state-dim", 800)
     expect_refusal(["--backend window", "--no-imu"], "vio", *window, "--rendered")

@@ -1,5 +1,6 @@
 // Runs that go on from saves of themselves, after each few frames, in a block that holds nothing else: each frame gives the bits of a run
 // that was never saved. Starts, losses, anchors, marks, masks, places, walls and patches are in them.
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
@@ -106,6 +107,31 @@ void test_a_walk_before_a_wall_with_patches_should_go_on() {
   expect_the_same(all[0], all[1]);
 }
 
+void test_a_walk_before_a_wall_in_the_window_should_go_on() {
+  Numbers all[2];
+  for (int continued = 0; continued < 2; ++continued) {
+    WallWalk walk(160, 0, 100, PF_BACKEND_WINDOW);
+    pf_wall_prior_t wall = WallWalk::wall(0.02, 1.8);
+    for (int i = 0; i < 3; ++i) wall.covariance[4 * i] = 1e-3;
+    walk.add(wall);
+    pf_memory_t need;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&walk.config(), &need));
+    int on_wall = 0;
+    for (int k = 0; k < 150; ++k) {
+      walk.step(k > 100 && k < 104);
+      if (continued > 0 && k % 5 == 0) continue_anew(walk.config(), need.bytes, walk.slam);
+      all[continued].push_back(numbers_of(walk.slam));
+      pf_plane_t plane;
+      std::size_t count = 0;
+      if (pf_get_planes(walk.slam, &plane, 1, &count) == PF_OK && count > 0 && plane.is_wall != 0)
+        on_wall = std::max(on_wall, static_cast<int>(plane.points));
+    }
+    std::printf("at most %d points on the wall\n", on_wall);
+    TEST_ASSERT_TRUE(on_wall > 0);
+  }
+  expect_the_same(all[0], all[1]);
+}
+
 }  // namespace
 
 int main() {
@@ -116,5 +142,6 @@ int main() {
     RUN_TEST(test_a_run_with_templates_and_an_open_lens_should_go_on);
   }
   RUN_TEST(test_a_walk_before_a_wall_with_patches_should_go_on);
+  RUN_TEST(test_a_walk_before_a_wall_in_the_window_should_go_on);
   return UNITY_END();
 }

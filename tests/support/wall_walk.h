@@ -16,11 +16,13 @@
 
 class WallWalk {
  public:
-  /// features: in view; negative: the default.
-  WallWalk(int frames, int patches, int features) : sim_(open(frames), pf_sim_close) {
+  /// features: in view; negative: the default. With the window there are no patches.
+  WallWalk(int frames, int patches, int features, pf_backend_t backend = PF_BACKEND_FILTER)
+      : sim_(open(frames), pf_sim_close) {
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config_));
     pf_sim_camera(sim_.get(), &config_.camera);
     config_.capacity.max_patches = patches;
+    config_.backend = backend;
     config_.capacity.patch_side_px = 64;
     if (features >= 0) config_.map.features_in_view = features;
     pf_memory_t need;

@@ -38,7 +38,8 @@ Wide7 held_by_pose(const Mat6& pose, const Vec3& p_W, Scalar sigma_scale) {
   B(6, 6) = 1;
   C.topLeftCorner<6, 6>() = pose.cast<double>();
   C(6, 6) = static_cast<double>(sigma_scale) * static_cast<double>(sigma_scale);
-  return B.lazyProduct(C).lazyProduct(B.transpose());
+  const Wide7 P = B.lazyProduct(C).lazyProduct(B.transpose());
+  return (P + P.transpose()) / 2;
 }
 
 }  // namespace
@@ -187,7 +188,7 @@ Similarity WallGauge::forget(int k, const Mat3& C, Scalar widening) {
     for (int i = 0; i < rows_; ++i) {
       const Eigen::Map<const Eigen::Vector3d> row(cross_ + 3 * i);
       const Eigen::Vector3d by = M.lazyProduct(row);
-      for (int j = 0; j < rows_; ++j) at(i, j) += by.dot(Eigen::Map<const Eigen::Vector3d>(cross_ + 3 * j));
+      for (int j = 0; j <= i; ++j) at(j, i) = at(i, j) += by.dot(Eigen::Map<const Eigen::Vector3d>(cross_ + 3 * j));
       if (i < row_of(k) || i >= row_of(k) + 3) shift(i, row.dot(Mx));
     }
   }
