@@ -51,7 +51,11 @@ class KeyframeAdjustment {
   /// The camera has been found at a place of this covariance: what it sees is known no better, until the next adjustment.
   void begin_at(const Mat6& place) { map_covariance_ = place; }
   /// All of W is moved.
-  void move(const Similarity& T) { map_covariance_ = T.of_pose_covariance(map_covariance_); }
+  void move(const Similarity& T) {
+    map_covariance_ = T.of_pose_covariance(map_covariance_);
+    shape_.given_held = T.of_pose_covariance(shape_.given_held);
+    shape_.held_span *= T.s;
+  }
   HeldTarget& target() { return target_; }
 
   void carry(Archive& archive);  ///< base/archive.h

@@ -81,6 +81,7 @@ void KeyframePlanes::clear_points(int k) {
 void KeyframePlanes::move(const Similarity& T) {
   const Scalar s = T.s;
   for (const int k : used_entries(table_)) {
+    if (table_[k].known && !is_measured(k)) continue;  // it is where the plan has it, and not in the map
     KeyframePlane& plane = plane_[k];
     plane.frame = {T.q.toRotationMatrix() * plane.frame.R_WP, T.of(plane.frame.o_W)};
     plane.covariance.row(2) *= s;
