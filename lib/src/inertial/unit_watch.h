@@ -45,6 +45,7 @@ class UnitWatch {
   /// An event that concerns the unit. At the beginning and the end of a rest the comparison of rates starts anew.
   void take(UnitEvent event);
   /// UnitEvidence
+  Scalar sum() const { return parts_->evidence.sum(); }
   bool is_map_on_trial() const { return parts_->evidence.is_map_on_trial(); }
 
   /// True where the clock or the axes are open and not found yet.
