@@ -1,4 +1,4 @@
-/// Names and units of columns: lib/docs/guide/data_sets.md lists whose they are.
+/// Names and units of columns: lib/docs/reference/files.md lists whose they are.
 #include "imu_header.h"
 
 #include <algorithm>

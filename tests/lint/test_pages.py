@@ -14,7 +14,7 @@ import sizes  # noqa: E402
 DOCS = source.ROOT / "lib/docs"
 # Pages about the project as a whole, which no file implements.
 OVERVIEW = {"theory/architecture.md", "theory/notation.md"}
-KINDS = {"adr", "guide", "lab", "results", "theory"}
+KINDS = {"adr", "guide", "lab", "reference", "results", "theory"}  # reference/: what is looked up, as bytes of a format
 # Tables of results/ that other tools write, or that repeat what other pages measure.
 NOT_MEASURED = {"README.md", "decisions.md", "devices.md", "missed.md"}
 OLD = r"\*Old numbers, \d{4}-\d\d-\d\d( to \d{4}-\d\d-\d\d)?\.\*\n"  # above a table that tools/remake-results does not make

@@ -1,5 +1,5 @@
 """Planes in the film and on the map have the colours of their classes where gravity is known: in the picture they are those that
-lib/docs/guide/capture.md names, a legend says which is which, and people with red-green blindness can tell them apart. Where gravity is not
+lib/docs/reference/files.md names, a legend says which is which, and people with red-green blindness can tell them apart. Where gravity is not
 known, a plane has the colour of its number, and there is no legend."""
 
 import itertools
@@ -70,8 +70,8 @@ def is_there(rows, colour, left, right, size):
 
 
 def named_colours():
-    """Of the table of classes in capture.md: name in the files, colour."""
-    page = (SOURCE / "lib/docs/guide/capture.md").read_text()
+    """Of the table of classes in files.md: name in the files, colour."""
+    page = (SOURCE / "lib/docs/reference/files.md").read_text()
     return {name: tuple(int(part, 16) for part in parts)
             for name, *parts in re.findall(r"^\| `(\w+)` \|.*`#(..)(..)(..)` \|$", page, re.MULTILINE)}
 
@@ -88,7 +88,7 @@ def main():
         skip("pf-capture was not built")
     colours = named_colours()
     if sorted(colours) != sorted(["vertical", "horizontal_up", "horizontal_down", "other", "unknown"]):
-        fail(f"capture.md names the colours of {sorted(colours)}")
+        fail(f"files.md names the colours of {sorted(colours)}")
     for eyes, matrix in EYES.items():
         apart, a, b = min((sum((p - q) ** 2 for p, q in zip(lab(colours[a], matrix), lab(colours[b], matrix))) ** 0.5, a, b)
                           for a, b in itertools.combinations(colours, 2))

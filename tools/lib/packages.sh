@@ -17,7 +17,7 @@ optional_cameras=(libcamera-dev libiio-dev)
 optional_devices=("${optional_cameras[@]}" xvfb)
 optional_arm=(g++-arm-linux-gnueabihf)
 optional_fuzz=(clang libclang-rt-dev llvm)
-optional_all=("${optional_fuzz[@]}" clang-tidy valgrind make xz-utils)
+optional_all=("${optional_fuzz[@]}" clang-tidy valgrind doxygen make xz-utils)
 
 # missing_packages NAME...   prints those that are not installed
 missing_packages() {

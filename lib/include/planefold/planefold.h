@@ -618,7 +618,7 @@ PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, 
 
 typedef enum pf_map_kind {
   /* Places, planes, anchors, gravity and the lens, in a format that any build reads
-   * (lib/docs/theory/map_format.md). */
+   * (lib/docs/reference/map_format.md). */
   PF_MAP_PORTABLE = 1,
   /* The context as it stands between two frames, to go on with the very next one: the bits that
    * follow are those of a run that was never saved. For the same build, config and kernel set */

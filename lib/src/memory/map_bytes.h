@@ -5,7 +5,7 @@
 
 #include "base/scalar.h"
 
-/// Numbers and sections of a saved map as bytes: little-endian, whatever the processor (lib/docs/theory/map_format.md).
+/// Numbers and sections of a saved map as bytes: little-endian, whatever the processor (lib/docs/reference/map_format.md).
 
 namespace pf {
 

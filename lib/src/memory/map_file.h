@@ -11,7 +11,7 @@
 #include "memory/map_bytes.h"
 #include "memory/place.h"
 
-/// What a saved map holds, section by section (lib/docs/theory/map_format.md). Knows no back end.
+/// What a saved map holds, section by section (lib/docs/reference/map_format.md). Knows no back end.
 
 namespace pf {
 

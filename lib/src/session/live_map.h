@@ -6,7 +6,7 @@
 #include "base/status.h"
 #include "memory/map_bytes.h"
 
-/// A session as it stands between two frames, as a saved map of its own kind (lib/docs/theory/map_format.md).
+/// A session as it stands between two frames, as a saved map of its own kind (lib/docs/reference/map_format.md).
 
 namespace pf {
 

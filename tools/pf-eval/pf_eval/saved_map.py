@@ -1,4 +1,4 @@
-"""pf-eval map: what a saved map holds. Reads the format of lib/docs/theory/map_format.md by itself, and needs nothing but Python."""
+"""pf-eval map: what a saved map holds. Reads the format of lib/docs/reference/map_format.md by itself, and needs nothing but Python."""
 
 import argparse
 import json

@@ -3,7 +3,7 @@
 #include "filter_slam/memory/filter_memory.h"
 #include "filter_slam/planes/plane_points.h"
 
-/// FilterMemory: what it writes (lib/docs/theory/map_format.md).
+/// FilterMemory: what it writes (lib/docs/reference/map_format.md).
 
 namespace pf {
 

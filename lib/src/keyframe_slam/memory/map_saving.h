@@ -5,7 +5,7 @@
 #include "keyframe_slam/planes/planes.h"
 #include "memory/map_file.h"
 
-/// Writes the window's map to a portable one, and begins in one (lib/docs/theory/map_format.md).
+/// Writes the window's map to a portable one, and begins in one (lib/docs/reference/map_format.md).
 
 namespace pf {
 
