@@ -102,7 +102,6 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   static uint8_t pixels[640 * 480];
   const pf_image_t image = {pixels, 640, 480, 640, 1000};
   double scratch[8], information[49];
-  pf_observation_t observation;
   pf_wall_prior_t prior;
   uint32_t id = 0;
   pf_memory_t need;
@@ -111,7 +110,6 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   TEST_ASSERT_TRUE(need.bytes <= sizeof(block) && need.alignment <= 64);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, sizeof(block), &slam));
-  memset(&observation, 0, sizeof(observation));
   memset(&prior, 0, sizeof(prior));
   prior.R_WP[0] = prior.R_WP[4] = prior.R_WP[8] = 1;
   prior.covariance[0] = prior.covariance[4] = prior.covariance[8] = 1e-6;
@@ -119,12 +117,51 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   prior.outline_P[0][0] = -1, prior.outline_P[0][1] = -1;
   prior.outline_P[1][0] = 1, prior.outline_P[1][1] = -1;
   prior.outline_P[2][1] = 1;
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_observations(slam, 1, &observation, 1));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &prior, &id)); /* before a start in its frame */
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_get_gauge_information(slam, scratch, 8, information));
   /* A picture without a corner: starting, and no crash. */
   memset(pixels, 128, sizeof(pixels));
   TEST_ASSERT_EQUAL_INT(PF_NOTE_STARTING, pf_push_frame(slam, &image));
+}
+
+/* A camera that moves to its right before points that something else has found and recognised; frames without any are bridged. */
+static void test_pixels_of_the_caller_should_move_the_camera(void) {
+  static uint8_t block[3u << 20] __attribute__((aligned(64)));
+  enum { POINTS = 120, FRAMES = 60 };
+  pf_observation_t seen[POINTS];
+  pf_slam_t* slam = NULL;
+  pf_pose_t pose;
+  pf_report_t report;
+  good_config();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, sizeof(block), &slam));
+  for (int k = 0; k < FRAMES; ++k) {
+    size_t count = 0;
+    uint32_t random = 1;
+    for (uint32_t i = 0; i < POINTS; ++i) {
+      double x[3];
+      for (int a = 0; a < 3; ++a) x[a] = (double)((random = 1664525u * random + 1013904223u) >> 8) / (1 << 24);
+      const double z = 2 + 2 * x[2];
+      const double u = config.camera.cx + config.camera.fx * (4 * (x[0] - 0.5) - 0.02 * k) / z;
+      const double v = config.camera.cy + config.camera.fy * 3 * (x[1] - 0.5) / z;
+      if (u < 10 || v < 10 || u > config.camera.width - 11 || v > config.camera.height - 11) continue;
+      seen[count].id = i;
+      seen[count].pixel[0] = u, seen[count].pixel[1] = v;
+      seen[count++].sigma_px = 0.3;
+    }
+    pf_push_observations(slam, 33000000LL * (k + 1), seen, k == 40 || k == 41 ? 0 : count);
+  }
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &report));
+  TEST_ASSERT_EQUAL_INT(PF_STATE_TRACKING, report.state);
+  TEST_ASSERT_GREATER_THAN_INT(30, report.inliers);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &pose));
+  const double* p = pose.p_WC;
+  TEST_ASSERT_TRUE(p[0] > 0.1);
+  TEST_ASSERT_DOUBLE_WITHIN(0.02 * p[0], 0, sqrt(p[1] * p[1] + p[2] * p[2]));
+  TEST_ASSERT_DOUBLE_WITHIN(1e-4, 1, fabs(pose.q_WC[0]));
+  /* It takes one kind of frame. */
+  static uint8_t pixels[640 * 480];
+  const pf_image_t image = {pixels, 640, 480, 640, 10000000000LL};
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_frame(slam, &image));
 }
 
 static void test_second_pose_should_be_refused_where_it_says_nothing(void) {
@@ -162,6 +199,7 @@ int main(void) {
   RUN_TEST(test_block_with_an_inertial_unit_should_take_two_and_three_quarter_mebibytes_at_most);
   RUN_TEST(test_an_estimated_lens_should_be_taken_with_its_prior);
   RUN_TEST(test_calls_of_the_filter_should_be_refused_and_change_nothing);
+  RUN_TEST(test_pixels_of_the_caller_should_move_the_camera);
   RUN_TEST(test_second_pose_should_be_refused_where_it_says_nothing);
   return UNITY_END();
 }

@@ -585,7 +585,8 @@ PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 /* A feature that something else has found and recognised: for trackers in hardware and for
  * simulations. A new id begins a feature (if the map has room for it), a known one measures it.
  * With a target of points, the ids 0 .. count-1 are its points. Of an id that comes twice in a
- * call, the first counts. PF_ERROR_STATE with a rectangle as target, which is found in images only.
+ * call, the first counts. PF_ERROR_STATE with a rectangle as target, which is found in images only,
+ * and in the window with any target or in a loaded map.
  * A context takes frames or observations, not both. */
 typedef struct pf_observation {
   uint32_t id;

@@ -66,7 +66,10 @@ void KeyframeMapping::add_points(bool pending, Scalar median_depth) {
     keyframe.w_C = motion_.body().w_C;
     keyframe.row_depth = pending ? settings_.start_depth : median_depth;
   }
-  add_corners(settings_, search_.images(), newest, motion_.body(), keyframe.row_depth, &map_, &frame_);
+  if (given_.are_given())
+    add_given(given_, newest, motion_.body(), keyframe.row_depth, &map_, &frame_);
+  else
+    add_corners(settings_, search_.images(), newest, motion_.body(), keyframe.row_depth, &map_, &frame_);
   record_.begin_at_keyframe();
 }
 

@@ -18,7 +18,7 @@ class Archive;
 class KeyframeMapping {
  public:
   KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
-                  KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search,
+                  KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search, const GivenPixels& given,
                   const PoseMeasurement& pose, KeyframeRecord& record, KeyframeRelocaliser& relocaliser)
       : settings_(settings),
         map_(map),
@@ -27,6 +27,7 @@ class KeyframeMapping {
         planes_(settings, map, planes),
         noise_(noise),
         search_(search),
+        given_(given),
         pose_(pose),
         record_(record),
         keeper_(relocaliser.keeper()),
@@ -70,6 +71,7 @@ class KeyframeMapping {
   PlaneUpkeep planes_;
   const NoiseModel& noise_;
   const PointSearch& search_;
+  const GivenPixels& given_;
   const PoseMeasurement& pose_;
   KeyframeRecord& record_;
   PlaceKeeper& keeper_;

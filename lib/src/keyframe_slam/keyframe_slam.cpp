@@ -55,9 +55,13 @@ void KeyframeSlam::init() {
   data_ = Data();
 }
 
-Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
-  const FrameEntry entry = enter_frame(settings_, image, t_ns, &data_.frozen, &frame_, &tracking_);
+Status KeyframeSlam::push_frame(const ImageView* image, std::int64_t t_ns) {
+  if (image == nullptr && start_.takes_images_only()) return Status::kState;
+  const FrameEntry of_pixels = is_next_frame(frame_, t_ns) ? FrameEntry::kNew : FrameEntry::kLate;
+  const FrameEntry entry =
+      image == nullptr ? of_pixels : enter_frame(settings_, *image, t_ns, &data_.frozen, &frame_, &tracking_);
   if (entry == FrameEntry::kLate || entry == FrameEntry::kRepeated) return entry_status(entry, tracking_);
+  data_.has_image = image != nullptr;
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
   bool usable = entry == FrameEntry::kNew;
@@ -66,6 +70,12 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
     usable = search_.begin_frame(image);
   }
   if (!usable) return unusable_status(end_frame());
+  track();
+  return end_frame();
+}
+
+/// Measures a frame, and learns from it.
+void KeyframeSlam::track() {
   tracking_.note_usable_image(data_.since_last_ns);
   const bool has_walls = map_.tables().planes.has_known();
   const bool may_leave = !start_.is_in_loaded_map() && !has_walls;
@@ -89,14 +99,8 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   data_.is_map_fixed = search_.note_fixed();
   learn();
-  if (data_.second.given && data_.second.has_come(t_ns)) placement_.scale_by_second_pose(&data_.median_depth);
-  return end_frame();
-}
-
-Status KeyframeSlam::mark_pose() {
-  if (!tracking_.has_pose()) return Status::kState;
-  placement_.mark_pose();
-  return Status::kOk;
+  if (data_.second.given && data_.second.has_come(frame_.report.t_ns))
+    placement_.scale_by_second_pose(&data_.median_depth);
 }
 
 /// Begins the report and predicts the body to the new time.
@@ -124,7 +128,8 @@ void KeyframeSlam::measure() {
     if (record_.follow()) mapping_.adjust();
   } else if (data_.young && !start_.is_in_loaded_map()) {
     measuring_.measure_young(data_.median_depth);
-  } else if (tracking_.is_relocalising(record_.progress()) && !relocaliser_.is_prediction_narrow(data_.median_depth)) {
+  } else if (data_.has_image && tracking_.is_relocalising(record_.progress()) &&
+             !relocaliser_.is_prediction_narrow(data_.median_depth)) {
     tracking_.belief().spend();
     relocaliser_.recover(data_.median_depth);
     const Mat6* place = relocaliser_.found_covariance();
@@ -150,7 +155,7 @@ void KeyframeSlam::learn() {
   const bool tracked = tracking_.is_tracked(frame_.report);
   if (tracked && !record_.progress().pending()) {
     search_.learn_templates(prior_of(motion_));
-    measuring_.learn_noise();
+    if (data_.has_image) measuring_.learn_noise();
     data_.warnings.check(settings_, noise_, map_.camera());
   }
   const bool is_keyframe = mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
@@ -167,7 +172,7 @@ void KeyframeSlam::learn() {
   if (unit_.look_for_scale(placement_.map_of_unit(data_.median_depth), &solution))
     placement_.scale_by_unit(solution, &data_.median_depth);
   // A keyframe has work enough.
-  if (!tracked || is_keyframe || record_.progress().pending()) return;
+  if (!tracked || is_keyframe || record_.progress().pending() || !data_.has_image) return;
   relocaliser_.note_view(data_.median_depth);
   const MapJoin join = relocaliser_.take_join();
   if (join.map_id != 0) placement_.join(join, &data_.median_depth);
@@ -175,8 +180,9 @@ void KeyframeSlam::learn() {
 
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
-  if (unit_.leaves_metres(placement_.map_of_unit(data_.median_depth), data_.follows, data_.since_last_ns))
-    placement_.leave_metres();
+  const char* const why =
+      unit_.leaves_metres(placement_.map_of_unit(data_.median_depth), data_.follows, data_.since_last_ns);
+  if (why != nullptr) placement_.leave_metres(why);
   if (tracking_.has_pose() && !motion_.is_sound()) {
     const std::uint32_t map_id = tracking_.map_id();
     discard_map();
@@ -190,7 +196,7 @@ Status KeyframeSlam::end_frame() {
     if (has_depth) data_.median_depth = depth;
     if (!has_depth || !is_usable(motion_.pose_covariance(), depth))
       tracking_.set_unusable();
-    else if (frame_.report.attempts > 0)
+    else if (frame_.report.attempts > 0 && data_.has_image)
       relocaliser_.remember_view();
   }
   if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || record_.progress().pending()))

@@ -26,25 +26,22 @@ class Archive;
 
 class KeyframeSlam {
  public:
-  KeyframeSlam(const Settings& settings, Map& map, const ImuLog& imu)
-      : settings_(settings), map_{settings, map, frame_}, anchors_{map.anchors, map_, planes_}, unit_{settings,
-                                                                                                      map_,
-                                                                                                      frame_,
-                                                                                                      noise_,
-                                                                                                      imu,
-                                                                                                      motion_} {}
+  KeyframeSlam(const Settings& settings, Map& map, const ImuLog& imu, const GivenPixels& given)
+      : settings_(settings),
+        map_{settings, map, frame_},
+        anchors_{map.anchors, map_, planes_},
+        unit_{settings, map_, frame_, noise_, imu, motion_},
+        search_{settings, map_, planes_, frame_, noise_, given},
+        mapping_{settings, map_, frame_, motion_, planes_, noise_, search_, given, pose_, record_, relocaliser_} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
   bool layout(Arena& arena);
   void init();
 
-  Status push_frame(const ImageView& image, std::int64_t t_ns);
-  /// Marks the pose of the last frame. kState: there is none.
-  Status mark_pose();
+  /// image: null where the frame has given pixels; kState then: the start that was chosen needs images.
+  Status push_frame(const ImageView* image, std::int64_t t_ns);
 
-  /// Known change of the velocities in camera axes, until the next frame.
-  void push_control(const Vec3& dv_C, const Vec3& dw_C) { motion_.push_control(dv_C, dw_C); }
   MapPlacement& placement() { return placement_; }
   KeyframeStart& start() { return start_; }
 
@@ -54,6 +51,7 @@ class KeyframeSlam {
   const KeyframeMap& map() const { return map_; }
   const MapPlacement& placement() const { return placement_; }
   const KeyframeMotion& motion() const { return motion_; }
+  KeyframeMotion& motion() { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
   /// Keeps the map: its adjustment has the map's covariance, and it saves the map.
@@ -71,6 +69,7 @@ class KeyframeSlam {
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     bool is_map_fixed = false;       ///< the map has come from what stands still in the image
     bool follows = false;            ///< the frame before was tracked
+    bool has_image = false;          ///< this frame
     bool young = false;  ///< in this frame so few points have a depth that those without are used for the pose
     SecondPose second;
     FrozenCamera frozen;
@@ -79,6 +78,7 @@ class KeyframeSlam {
 
   void begin_frame(std::int64_t t_ns);
   Status end_frame();
+  void track();
   void measure();
   void learn();
   void discard_map();
@@ -93,13 +93,13 @@ class KeyframeSlam {
   KeyframePlanes planes_{settings_, map_};
   KeyframeAnchors anchors_;
   KeyframeUnit unit_;
-  PointSearch search_{settings_, map_, planes_, frame_, noise_};
+  PointSearch search_;
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
   KeyframeRelocaliser relocaliser_{settings_,         map_, motion_, search_.images().tracker(), measuring_,
                                    tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
-  KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_, relocaliser_};
+  KeyframeMapping mapping_;
   KeyframeStart start_{
       settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
       mapping_.saving(), record_, data_.second};

@@ -114,11 +114,10 @@ void MapPlacement::scale_by_unit(const MovingSolution& solution, Scalar* median_
                       tracking_.map_id());
 }
 
-void MapPlacement::leave_metres() {
+void MapPlacement::leave_metres(const char* why) {
   const std::uint32_t before = tracking_.map_id();
   rename_map();
-  settings_.hooks.say("lengths of map ", before,
-                      " are no metres, since they came from an inertial unit that is rejected: ", "it goes on as map ",
+  settings_.hooks.say("lengths of map ", before, " are no metres any more, since ", why, ": it goes on as map ",
                       tracking_.map_id());
 }
 

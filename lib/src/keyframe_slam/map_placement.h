@@ -62,8 +62,8 @@ class MapPlacement {
   void scale_by_second_pose(Scalar* median_depth);
   /// The inertial unit gives lengths in metres: by motion, where the map is scaled and goes on under another id, or by a rest.
   void scale_by_unit(const MovingSolution& solution, Scalar* median_depth);
-  /// It does no more, since it is rejected: the map goes on under another id.
-  void leave_metres();
+  /// It does no more: the map goes on under another id.
+  void leave_metres(const char* why);
   /// After the adjustment of a keyframe: the map goes where the samples say that it is.
   void follow_unit(Scalar* median_depth) { move(unit_.follow_adjustment(mapping_.adjustment()), median_depth); }
   /// What the inertial unit has to know of the map.
@@ -75,9 +75,11 @@ class MapPlacement {
     anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
   }
 
-  /// Marks the pose of this frame.
-  void mark_pose() {
+  /// Marks the pose of this frame. kState: there is none.
+  Status mark_pose() {
+    if (!tracking_.has_pose()) return Status::kState;
     mark_ = {true, frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+    return Status::kOk;
   }
   const MarkedPose& mark() const { return mark_; }
   /// What a pose of the map at p_W may be off in W, (theta, p), beside what it may be off in the map.

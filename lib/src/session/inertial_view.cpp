@@ -112,6 +112,11 @@ bool read_inertial(const Settings& settings, const KeyframeSlam& slam, InertialV
   const KeyframeUnit& unit = slam.placement().unit();
   if (!settings.inertial || !unit.has_begun()) return false;
   describe(settings, unit.filter(), unit, unit.is_from_motion(), out);
+  // The filter has gravity in the map about the camera, which may be tilted in W.
+  const Mat3 of_map = slam.placement().map_covariance(slam.motion().body().p_W).topLeftCorner<3, 3>();
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) out->covariance[i][j] += out->axis_W[i].dot(of_map * out->axis_W[j]);
+  for (int i = 0; i < 2; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));
   return true;
 }
 

@@ -11,8 +11,9 @@ bool Session::layout(Arena& arena, const Settings& settings) {
   if (settings.mask.is_asked_for) mask_.layout(arena, settings.camera.width, settings.camera.height);
   settings_.mask.mask = settings.mask.is_asked_for ? &mask_ : nullptr;
   const auto lay_out = [&](auto& back_end) { back_end.layout(arena); };
+  if (has_window) given_.layout(arena, settings.max_features, inbox_size());
   if (has_window)
-    window_ = arena.place<KeyframeSlam>(lay_out, settings_, map_, imu_);
+    window_ = arena.place<KeyframeSlam>(lay_out, settings_, map_, imu_, given_);
   else
     filter_ = arena.place<FilterSlam>(lay_out, settings_, map_, imu_);
   return arena.ok();
@@ -48,13 +49,17 @@ Vec3 Session::given_gravity_W() const {
 Status Session::push_frame(const ImageView& image, std::int64_t t_ns) {
   data_.kind = FrameKind::kImages;
   imu_.mark_frame(t_ns);
-  return has_filter() ? filter_->push_frame(image, t_ns) : window_->push_frame(image, t_ns);
+  if (has_filter()) return filter_->push_frame(image, t_ns);
+  given_.end();
+  return window_->push_frame(&image, t_ns);
 }
 
 Status Session::push_observations(int count, std::int64_t t_ns) {
   data_.kind = FrameKind::kObservations;
   imu_.mark_frame(t_ns);
-  return filter_->push_observations(inbox(), count, t_ns);
+  if (has_filter()) return filter_->push_observations(inbox(), count, t_ns);
+  given_.begin(count, map_.features);
+  return window_->push_frame(nullptr, t_ns);
 }
 
 }  // namespace pf

@@ -46,22 +46,24 @@ class Session {
 
   // --- what comes in
   bool takes_images() const { return data_.kind != FrameKind::kObservations; }
-  bool takes_observations() const { return has_filter() && data_.kind != FrameKind::kImages; }
+  bool takes_observations() const { return data_.kind != FrameKind::kImages; }
   bool takes_control() const { return settings_.constant_velocity; }
   /// The start that was chosen needs images.
-  bool needs_images() const { return !has_filter() || filter_->start().takes_images_only(); }
+  bool needs_images() const {
+    return has_filter() ? filter_->start().takes_images_only() : window_->start().takes_images_only();
+  }
 
   Status push_frame(const ImageView& image, std::int64_t t_ns);
   /// Of a session that takes observations: where those of the next frame are written, as many as inbox_size().
-  PixelObservation* inbox() { return filter_->observations().inbox(); }
+  PixelObservation* inbox() { return has_filter() ? filter_->observations().inbox() : given_.inbox(); }
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
   /// The first `count` of the inbox.
   Status push_observations(int count, std::int64_t t_ns);
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) {
-    has_filter() ? filter_->motion().push_control(dv_C, dw_C) : window_->push_control(dv_C, dw_C);
+    has_filter() ? filter_->motion().push_control(dv_C, dw_C) : window_->motion().push_control(dv_C, dw_C);
   }
-  Status mark_pose() { return has_filter() ? filter_->mark_pose() : window_->mark_pose(); }
+  Status mark_pose() { return has_filter() ? filter_->mark_pose() : window_->placement().mark_pose(); }
   /// What a map holds beside what images tell.
   MapCalls map_calls() { return MapCalls(settings_, map_, filter_, window_); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
@@ -94,6 +96,7 @@ class Session {
   Settings settings_;
   Map map_;
   ImuLog imu_;
+  GivenPixels given_;  ///< of the window; the filter has an inbox of its own
   ImageMask mask_;
   Data data_;
   bool has_filter() const { return !kHasWindow || filter_ != nullptr; }

@@ -7,18 +7,13 @@
 #include "filter_slam/features/feature_keeper.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
+#include "frame/given_pixels.h"
 #include "frame/settings.h"
 #include "map/map.h"
 
 /// Measures a frame of pixels that the caller has matched: gates them, updates the filter, and adds features for unknown ids.
 
 namespace pf {
-
-struct PixelObservation {
-  std::uint32_t external_id;
-  Vec2 pixel;
-  Scalar sigma_px;
-};
 
 class ObservationFrontEnd {
  public:

@@ -115,14 +115,14 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
   const AdjustedPoses& poses = bundle_.poses;
   const int newest = poses.free - 1;
   map_covariance_ = given_held;
-  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0, Vec3::Zero()};
-  Vec3 sum = Vec3::Zero();
-  for (int a = poses.free; a < poses.seen_in; ++a) sum += poses.pose[a].p_W;
-  if (poses.seen_in > poses.free)
-    shape_.from_held = poses.pose[newest].p_W - sum / static_cast<Scalar>(poses.seen_in - poses.free);
-  for (int a = poses.free; a < poses.seen_in; ++a)
-    for (int b = poses.free; b < a; ++b)
-      shape_.held_span = std::max(shape_.held_span, (poses.pose[a].p_W - poses.pose[b].p_W).norm());
+  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0};
+  const auto take_span = [&](int a, int b) {
+    shape_.span = std::max(shape_.span, (poses.pose[a].p_W - poses.pose[b].p_W).norm());
+  };
+  for (int a = poses.free; a < poses.seen_in; ++a) {
+    take_span(a, newest);
+    for (int b = poses.free; b < a; ++b) take_span(a, b);
+  }
   int held = -1;
   for (int c = poses.free; c < poses.seen_in && choice_.is_away(); ++c) {
     const int k = poses.keyframe[c];
@@ -141,9 +141,8 @@ MapDrift KeyframeAdjustment::drift() const {
   if (!shape_.is_away) return drift;
   drift.any = true;
   drift.Q = shape_.given_held / static_cast<Scalar>(shape_.keyframes);
-  const Vec3& r = shape_.from_held;
-  const Scalar along = r.dot(drift.Q.bottomRightCorner<3, 3>() * r), r2 = r.squaredNorm();
-  drift.sigma_scale = along < r2 * r2 ? std::sqrt(along) / r2 : Scalar(1);
+  const Scalar sigma = std::sqrt(drift.Q.bottomRightCorner<3, 3>().trace() / 3);
+  drift.sigma_scale = shape_.span > sigma ? sigma / shape_.span : Scalar(1);
   return drift;
 }
 

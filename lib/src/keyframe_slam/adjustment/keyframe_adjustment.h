@@ -20,8 +20,7 @@ struct AdjustmentShape {
   bool is_determined = false;      ///< there are covariances
   bool is_away = false;            ///< the map's first keyframe is not connected with the newest one
   Mat6 given_held = Mat6::Zero();  ///< covariance of the newest keyframe's (theta, p), given those that were held fixed
-  Scalar held_span = 0;            ///< largest distance of two of these, which holds the size of the map
-  Vec3 from_held = Vec3::Zero();   ///< where the newest keyframe is from the mean place of these
+  Scalar span = 0;                 ///< largest distance of two of these, or of one and the newest
 };
 
 /// What the map about the newest keyframe may have moved in W since the keyframe before.
@@ -50,7 +49,7 @@ class KeyframeAdjustment {
   const Mat6& map_covariance() const { return map_covariance_; }
   const AdjustmentShape& shape() const { return shape_; }
   /// Where no keyframe that was held is the map's first, the newest one may have moved against W by its share of what it may have moved
-  /// against those that were held, and its size by how far it may have moved away from these, over its distance from them.
+  /// against those that were held, and its size by that over their span with it.
   MapDrift drift() const;
   /// Variance of ln rho of a point, by the last adjustment and given the keyframes that it held: others are not taken as exact. Zero where
   /// the point had no part in it, or nothing was determined.
@@ -65,8 +64,7 @@ class KeyframeAdjustment {
   void move(const Similarity& T) {
     map_covariance_ = T.of_pose_covariance(map_covariance_);
     shape_.given_held = T.of_pose_covariance(shape_.given_held);
-    shape_.held_span *= T.s;
-    shape_.from_held = T.s * (T.q * shape_.from_held);
+    shape_.span *= T.s;
   }
   HeldTarget& target() { return target_; }
 

@@ -239,13 +239,18 @@ bool KeyframeUnit::look_for_scale(const MapOfUnit& map, MovingSolution* solution
   return true;
 }
 
-bool KeyframeUnit::leaves_metres(const MapOfUnit& map, bool follows, std::int64_t dt_ns) {
-  if (!has_begun()) return false;
+const char* KeyframeUnit::leaves_metres(const MapOfUnit& map, bool follows, std::int64_t dt_ns) {
+  using tuning::moving_verdict::kLateSigmaScale;
+  if (!has_begun()) return nullptr;
   const bool rejected = parts_->watch.note(follows && !parts_->hold.holds(), map.is_tracked, dt_ns);
-  if (!rejected || !parts_->watch.is_map_on_trial() || map.knows_scale) return false;
-  parts_->watch.take(UnitEvent::kNewMap);
+  if (rejected && parts_->watch.is_map_on_trial() && !map.knows_scale) {
+    parts_->watch.take(UnitEvent::kNewMap);
+    begin_map();
+    return "they came from an inertial unit that is rejected";
+  }
+  if (!is_from_motion() || !(parts_->ruler.scale_variance() > kLateSigmaScale * kLateSigmaScale)) return nullptr;
   begin_map();
-  return true;
+  return "the map has lost what held its size";
 }
 
 /// While innovations add up that the samples' noise does not explain, the map stays where it is.

@@ -46,6 +46,8 @@ class KeyframeStart {
   bool has_place() const { return has_place_; }
   /// It has a target, which gives the unit of length.
   bool is_at_target() const { return target_.has_target(); }
+  /// Starts at a target and in a map that was opened need images.
+  bool takes_images_only() const { return is_at_target() || is_in_loaded_map(); }
   /// Covariance of (theta, p) of the first pose in W.
   Mat6 first_covariance() const;
   /// First place of the camera: the caller's, or the one that defines W.

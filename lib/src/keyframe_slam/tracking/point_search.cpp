@@ -31,13 +31,9 @@ void PointSearch::init() {
   placed_ = 0;
 }
 
-bool PointSearch::begin_frame(const ImageView& image) {
+bool PointSearch::begin_frame(const ImageView* image) {
   placed_ = 0;
-  return images_.begin_frame(image);
-}
-
-bool PointSearch::is_inside(const Vec2& pixel) const {
-  return is_in_image(settings_.camera, pixel, static_cast<Scalar>(settings_.border_px));
+  return image == nullptr || images_.begin_frame(*image);
 }
 
 int PointSearch::list_placed(const PosePrior& at) {
@@ -54,10 +50,12 @@ int PointSearch::list(const PosePrior& at, bool placed, Scalar depth) {
     if (!map_.used(i) || map_.point(i).has_depth != placed) continue;
     const Feature& f = map_.feature(i);
     ExpectedPixel expected;
-    if (!f.has_appearance || (f.is_target && map_.tables().target_withdrawn)) continue;
+    const bool can_be_found = given_.are_given() ? given_.of(i) != nullptr : f.has_appearance;
+    if (!can_be_found || (f.is_target && map_.tables().target_withdrawn)) continue;
     if (!(placed ? expect_placed(map_, i, at, &expected) : expect_unplaced(map_, i, at, depth, &expected))) continue;
     const Mat2 innovation = innovation_of(expected);
-    if (!is_inside(expected.pixel) || !is_covariance(innovation)) continue;
+    const bool is_inside = is_in_image(settings_.camera, expected.pixel, static_cast<Scalar>(settings_.border_px));
+    if (!is_inside || !is_covariance(innovation)) continue;
     const int match = frame_.add(
         {i, f.id, MatchStatus::kMissed, map_.kind(i), false, expected.pixel, innovation, Vec2::Zero(), Scalar(0)});
     point_[first + count++] = {match, Mat2::Identity(), Scalar(0)};
@@ -107,28 +105,42 @@ SearchTask PointSearch::task_of(int i, const PosePrior& at, Scalar depth) const 
   return task;
 }
 
+/// Whether a point of the list is found. A pixel that the caller gives is the point's wherever it is.
+bool PointSearch::find(int c, const PosePrior& at, Scalar depth) {
+  Match& match = frame_.match(point_[c].match);
+  if (given_.are_given()) {
+    const PixelObservation& pixel = *given_.of(match.feature);
+    ++frame_.report.attempts;
+    match.measured = pixel.pixel;
+    point_[c].noise = Mat2::Identity() * (pixel.sigma_px * pixel.sigma_px);
+    return true;
+  }
+  SearchTask task = task_of(match.feature, at, depth);
+  task.predicted = match.predicted;
+  task.innovation = match.innovation;
+  if (settings_.gate * symmetric_eigenvalues(match.innovation)(1) > kTemplateEllipse * kTemplateEllipse)
+    task.shape = nullptr;
+  if (at.follows && !aim(match.feature, &task)) return false;
+  const SearchOutcome outcome = images_.search(task);
+  if (!outcome.comparable) return false;
+  match.searched = true;
+  ++frame_.report.attempts;
+  if (!outcome.found || squared_distance(outcome.pixel - match.predicted, match.innovation) > settings_.gate)
+    return false;
+  match.measured = outcome.pixel;
+  point_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
+  return true;
+}
+
 int PointSearch::search(int found, int first, int count, const PosePrior& at, Scalar depth) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   const Scalar image = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
   for (int c = first; c < first + count; ++c) {
+    if (!find(c, at, depth)) continue;
     Match& match = frame_.match(point_[c].match);
-    SearchTask task = task_of(match.feature, at, depth);
-    task.predicted = match.predicted;
-    task.innovation = match.innovation;
-    if (settings_.gate * symmetric_eigenvalues(match.innovation)(1) > kTemplateEllipse * kTemplateEllipse)
-      task.shape = nullptr;
-    if (at.follows && !aim(match.feature, &task)) continue;
-    const SearchOutcome outcome = images_.search(task);
-    if (!outcome.comparable) continue;
-    match.searched = true;
-    ++frame_.report.attempts;
-    if (!outcome.found || squared_distance(outcome.pixel - match.predicted, match.innovation) > settings_.gate)
-      continue;
     ++frame_.report.matches;
-    match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus has it as an inlier
-    point_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
-    point_[c].searched = std::min(image, ellipse_area(task.innovation, settings_.gate));
+    point_[c].searched = std::min(image, ellipse_area(match.innovation, settings_.gate));
     std::swap(point_[found++], point_[c]);
   }
   return found;
@@ -139,6 +151,7 @@ bool PointSearch::is_wide(const Mat2& innovation) const {
 }
 
 bool PointSearch::find_followed() {
+  if (given_.are_given()) return false;
   int wide = 0;
   for (int t = 0; t < frame_.match_count(); ++t) wide += is_wide(frame_.match(t).innovation) ? 1 : 0;
   if (wide == 0 || tuning::image_front_end::kMinWide * wide < frame_.match_count()) return false;
@@ -161,7 +174,7 @@ bool PointSearch::aim(int i, SearchTask* task) const {
 }
 
 void PointSearch::learn_templates(const PosePrior& at) {
-  if (!images_.has_templates()) return;
+  if (!images_.has_templates() || given_.are_given()) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kTemplate]);
   for (int c = 0; c < placed_; ++c) {
     const Match& match = frame_.match(point_[c].match);

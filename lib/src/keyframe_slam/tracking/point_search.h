@@ -1,12 +1,13 @@
 #pragma once
 
 #include "frame/followed_view.h"
+#include "frame/given_pixels.h"
 #include "frame/image_search.h"
 #include "frame/noise_model.h"
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/tracking/expected_pixel.h"
 
-/// Lists the points of the map that should be in view, and searches for them in the image.
+/// Lists the points of the map that should be in view, and searches for them in the image, or takes the pixels that the caller has found.
 
 namespace pf {
 
@@ -23,13 +24,13 @@ struct SearchedPoint {
 class PointSearch {
  public:
   PointSearch(const Settings& settings, KeyframeMap& map, const KeyframePlanes& planes, Frame& frame,
-              const NoiseModel& noise)
-      : settings_(settings), map_(map), planes_(planes), frame_(frame), noise_(noise) {}
+              const NoiseModel& noise, const GivenPixels& given)
+      : settings_(settings), map_(map), planes_(planes), frame_(frame), noise_(noise), given_(given) {}
 
   bool layout(Arena& arena);
   void init();
-  /// Prepares an image, with an empty list. False if it shows nothing to track.
-  bool begin_frame(const ImageView& image);
+  /// Prepares an image, with an empty list; null: the frame has given pixels. False if it shows nothing to track.
+  bool begin_frame(const ImageView* image);
 
   /// Lists the points with a depth, the most reliable first, in place of all that was listed. Returns how many.
   int list_placed(const PosePrior& at);
@@ -53,9 +54,13 @@ class PointSearch {
   /// the image does not show its motion.
   bool find_followed();
   /// After a frame's searches: ImageSearch::note_fixed.
-  bool note_fixed() { return images_.note_fixed(map_.camera(), frame_, &map_.tables().features); }
+  bool note_fixed() {
+    return !given_.are_given() && images_.note_fixed(map_.camera(), frame_, &map_.tables().features);
+  }
   /// Keeps the view of a frame that supported its pose, from which the next one may be followed.
-  void keep_view(const CameraView& view) { followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W); }
+  void keep_view(const CameraView& view) {
+    if (!given_.are_given()) followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W);
+  }
   /// The map is discarded, and with it all poses.
   void forget_view() { followed_.init(); }
 
@@ -68,9 +73,9 @@ class PointSearch {
 
  private:
   int list(const PosePrior& at, bool placed, Scalar depth);
-  bool is_inside(const Vec2& pixel) const;
   bool is_wide(const Mat2& innovation) const;
   bool aim(int i, SearchTask* task) const;
+  bool find(int c, const PosePrior& at, Scalar depth);
   SearchTask task_of(int i, const PosePrior& at, Scalar depth) const;
 
   const Settings& settings_;
@@ -78,6 +83,7 @@ class PointSearch {
   const KeyframePlanes& planes_;
   Frame& frame_;
   const NoiseModel& noise_;
+  const GivenPixels& given_;
   ImageSearch images_;
   FollowedView followed_;
   SearchedPoint* point_ = nullptr;  ///< one for each point of the map
