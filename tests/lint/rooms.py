@@ -4,7 +4,8 @@ GROUND = ["base", "covariance", "geometry", "vision"]
 BLOCKS = GROUND[:3] + ["model", "observe"]
 SHARED = GROUND + ["model", "observe", "filter", "bundle", "track", "map"]
 FRAME = SHARED + ["belief", "frame", "frame/start"]
-POSE = FRAME + ["filter_slam/pose"]
+UNIT = FRAME + ["inertial"]
+POSE = UNIT + ["filter_slam/pose"]
 FEATURES = POSE + ["filter_slam/features"]
 KEYFRAME_MAP = FRAME + ["memory", "keyframe_slam/map"]
 KEYFRAME_PLANES = KEYFRAME_MAP + ["keyframe_slam/planes"]
@@ -27,15 +28,15 @@ LIBRARY = {
     "memory": GROUND + ["track", "map"],
     "frame": SHARED + ["belief"],
     "frame/start": SHARED + ["belief", "frame"],
-    "filter_slam/pose": FRAME,
+    "inertial": FRAME,
+    "filter_slam/pose": UNIT,
     "filter_slam/features": POSE,
     "filter_slam/planes": FEATURES,
     "filter_slam/patches": FEATURES,
     "filter_slam/memory": FEATURES + ["memory", "filter_slam/planes"],
-    "filter_slam/inertial": POSE,
     "filter_slam/recovery": FEATURES + ["memory", "filter_slam/planes", "filter_slam/memory"],
-    "filter_slam/start": FEATURES + ["memory", "filter_slam/planes", "filter_slam/memory", "filter_slam/inertial"],
-    "filter_slam": FEATURES + ["memory"] + [f"filter_slam/{part}" for part in ("planes", "patches", "memory", "inertial", "recovery", "start")],
+    "filter_slam/start": FEATURES + ["memory", "filter_slam/planes", "filter_slam/memory"],
+    "filter_slam": FEATURES + ["memory"] + [f"filter_slam/{part}" for part in ("planes", "patches", "memory", "recovery", "start")],
     "keyframe_slam/map": FRAME + ["memory"],
     "keyframe_slam/planes": KEYFRAME_MAP,
     "keyframe_slam/memory": KEYFRAME_PLANES,
@@ -43,8 +44,9 @@ LIBRARY = {
     "keyframe_slam/adjustment": KEYFRAME_TRACKING,
     "keyframe_slam/walls": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
     "keyframe_slam/start": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
-    "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/walls", "keyframe_slam/start"],
-    "session": FRAME + ["memory", "filter_slam", "keyframe_slam"],
+    "keyframe_slam/inertial": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "inertial"],
+    "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/walls", "keyframe_slam/start", "keyframe_slam/inertial", "inertial"],
+    "session": UNIT + ["memory", "filter_slam", "keyframe_slam"],
     "api": FRAME + ["session"],
 }
 
@@ -87,7 +89,7 @@ ONLY_FOR = {
     "keyframe_slam/keyframe_slam.h": ["keyframe_slam/keyframe_slam*", "keyframe_slam/carry.cpp", "session/*"],
     "session/session.h": ["session/session.cpp", "session/carry.cpp", "session/live_map.cpp", "api/*"],
     # Starts and the state that the caller sees know no filter; nor do the frame's results.
-    "filter/filter.h": ["filter/*", "filter_slam/*", "frame/settings.h"],
+    "filter/filter.h": ["filter/*", "inertial/*", "filter_slam/*", "keyframe_slam/inertial/*", "frame/settings.h"],
 }
 
 # Folders of these rooms hold at most so many files (.h and .cpp, without those of folders in them).

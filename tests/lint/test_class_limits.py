@@ -9,7 +9,7 @@ import pathlib
 import classes
 import source
 
-ROOMS = ("session", "filter_slam", "keyframe_slam", "frame", "model", "observe", "bundle", "belief")
+ROOMS = ("session", "inertial", "filter_slam", "keyframe_slam", "frame", "model", "observe", "bundle", "belief")
 MAX_METHODS, MAX_MEMBERS, MAX_SOURCES, MAX_LINES = 25, 15, 2, 60
 
 # (class or function, what is counted): (how many, why).

@@ -1,4 +1,4 @@
-"""Runs that go on from saves of themselves have the digests of runs that were never saved: with an inertial unit, an open lens, templates
+"""Runs that go on from saves of themselves have the digests of runs that were never saved: with an inertial unit in both back ends, an open lens, templates
 with masks, places, and a covered lens."""
 
 import os
@@ -14,6 +14,7 @@ PROGRAM = script.BIN / "pf-digest"
 EVERY = "3"  # frames from save to save
 RUNS = [
     ["sim:room", "--auto", "--imu", "--frames", "90"],
+    ["sim:room", "--auto", "--imu", "--backend", "window", "--frames", "200"],
     ["sim:desk", "--masks", "--lens", "--frames", "40"],
     ["sim:room", "--backend", "window", "--lens", "--frames", "60"],
     ["sim:room", "--places", "8", "--black-from", "40", "--black", "12", "--frames", "80"],

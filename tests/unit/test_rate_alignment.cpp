@@ -1,7 +1,7 @@
 // The camera's rates against the gyroscope's: delay, axes and scale are found, and what is wrong with a unit is seen.
 #include <cmath>
 
-#include "filter_slam/inertial/rate_alignment.h"
+#include "inertial/rate_alignment.h"
 #include "support/seeded_random.h"
 #include "support/textured_images.h"
 #include "unity.h"

@@ -1,5 +1,5 @@
 // Standing still: detected from samples and pixels together, and from neither alone.
-#include "filter_slam/inertial/rest_detector.h"
+#include "inertial/rest_detector.h"
 #include "support/seeded_random.h"
 #include "support/textured_images.h"
 #include "unity.h"

@@ -1,7 +1,7 @@
 // Modes of an inertial unit: what each event makes of each of them, and which of them move the body.
 #include <initializer_list>
 
-#include "filter_slam/inertial/unit_mode.h"
+#include "inertial/unit_mode.h"
 #include "unity.h"
 
 using namespace pf;

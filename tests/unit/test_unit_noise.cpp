@@ -1,8 +1,8 @@
 // A unit's noise is learned from what its samples scatter by and from innovations, between a third and ten times what is stated.
 #include <cmath>
 
-#include "filter_slam/inertial/force_check.h"
-#include "filter_slam/pose/unit_noise.h"
+#include "inertial/force_check.h"
+#include "inertial/unit_noise.h"
 #include "support/seeded_random.h"
 #include "support/textured_images.h"
 #include "unity.h"

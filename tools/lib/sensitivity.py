@@ -37,7 +37,7 @@ def runs_of(name):
 
     if name.startswith("keyframe_slam"):
         return chosen("window")
-    if name.startswith("filter_slam/inertial"):
+    if name.startswith("inertial"):
         return chosen("vio")
     if name.startswith("filter_slam/patches") or re.search(r"patch|align|homography|wall", name):
         return chosen("box")

@@ -367,8 +367,9 @@ json of_fault(const Choices& c, const VioSummary* s) {
 
 /// What the window has not of what is asked for; empty: nothing.
 std::string refused_by_window(const Choices& c) {
-  if (!c.no_imu) return "it takes no samples of an inertial unit; --no-imu is the same walk without";
   if (!c.vio.rendered) return "it takes pictures alone; add --rendered";
+  if (std::find(c.estimate.begin(), c.estimate.end(), "readout") != c.estimate.end())
+    return "it does not estimate the readout; leave --estimate readout away";
   return "";
 }
 

@@ -93,6 +93,8 @@ class BlockFilter {
   void inflate_by(const Part& part, const Mat3& M);
   /// The same along one row h of a Jacobian: the variance of h x grows by `variance`.
   void inflate_along(const Rows& row, Scalar variance);
+  /// P += Uᵀ Q U. Q: U.rows squared, symmetric.
+  void add_noise(const Rows& U, const Scalar* Q);
   /// P_ij <- f_i f_j P_ij: rows in other units.
   void scale_rows(const Scalar* factor) {
     for (int i = 0; i < P_.n; ++i)

@@ -13,6 +13,23 @@ void BlockFilter::inflate(const Part& part, const Scalar* Q) {
     for (int j = 0; j <= i; ++j) P_.set(first + i, first + j, P_(first + i, first + j) + Q[i * part.size + j]);
 }
 
+void BlockFilter::add_noise(const Rows& U, const Scalar* Q) {
+  const int columns = U.columns();
+  const auto of_column = [&](int c) {
+    int p = 0;
+    for (; c >= U.part[p].size; ++p) c -= U.part[p].size;
+    return row(U.part[p]) + c;
+  };
+  for (int a = 0; a < columns; ++a)
+    for (int b = 0; b <= a; ++b) {
+      Scalar sum = 0;
+      for (int i = 0; i < U.rows; ++i)
+        for (int j = 0; j < U.rows; ++j) sum += U.h[i * columns + a] * Q[i * U.rows + j] * U.h[j * columns + b];
+      const int one = of_column(a), other = of_column(b);
+      P_.set(std::max(one, other), std::min(one, other), P_(std::max(one, other), std::min(one, other)) + sum);
+    }
+}
+
 void BlockFilter::begin_spread() {
   PF_ASSERT(max_rows_ >= 6);
   std::fill(W_, W_ + 3 * ld_, Scalar(0));

@@ -153,6 +153,8 @@ class Filter {
   void forget_through(int plane, const Vec3& sigma);
   /// Multiplies the covariance of a wrong known plane's prior by (1 + widening). False where the prior is tighter than the plane.
   bool forget_prior(int plane, const Mat3& prior, Scalar widening);
+  /// The same of what is along a few rows: P += Uᵀ Q U, Q symmetric.
+  void add_noise(const Rows& U, const Scalar* Q) { blocks_.add_noise(U, Q); }
   /// Undoes what an update by this row contributed: its variance grows by `variance`, and that of all else by its share.
   void forget_row(const Rows& row, Scalar variance) { blocks_.inflate_along(row, variance); }
   /// Moves the plane, and the points that depend on it directly, to another frame. False, with nothing changed, when the frame is too

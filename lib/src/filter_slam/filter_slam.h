@@ -8,7 +8,6 @@
 #include "filter_slam/features/observation_front_end.h"
 #include "filter_slam/image_tracking.h"
 #include "filter_slam/map_upkeep.h"
-#include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/filter_start.h"
 #include "filter_slam/unit_keeper.h"
@@ -16,6 +15,7 @@
 #include "frame/frozen_camera.h"
 #include "frame/settings.h"
 #include "frame/tracking_state.h"
+#include "inertial/body_motion.h"
 #include "map/map.h"
 
 /// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:

@@ -1,8 +1,10 @@
 #include "filter_slam/unit_keeper.h"
 
+#include <cmath>
 #include <new>
 
-#include "filter_slam/inertial/tuning.h"
+#include "filter/frame_pixels.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 
@@ -18,9 +20,8 @@ void UnitKeeper::layout(Arena& arena) {
   if (!settings_.inertial) return;
   Parts* const place = arena.take<Parts>(1);
   if (place != nullptr)
-    parts_ = new (place) Parts{{settings_, filter_, rest_, imu_, motion_},
-                               {settings_, filter_, map_, frame_, imu_, motion_},
-                               {settings_, imu_}};
+    parts_ = new (place) Parts{
+        {settings_, filter_, rest_, imu_, motion_}, {settings_, filter_, frame_, imu_, motion_}, {settings_, imu_}};
 }
 
 void UnitKeeper::init() {
@@ -99,9 +100,33 @@ ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlatio
   told.depth = depth;
   told.correlation = correlation_frames;
   MovingSolution solution;
-  if (!parts_->moving.note(told, &solution)) return ScaleChange::kNone;
+  if (!parts_->moving.note(told, moving_points(), &solution)) return ScaleChange::kNone;
   metric_.use_motion(solution);
   return ScaleChange::kRescaled;
+}
+
+MovingPoints UnitKeeper::moving_points() const {
+  const auto find = [](const void* owner, std::uint32_t id, Vec3* p_W) {
+    const UnitKeeper& keeper = *static_cast<const UnitKeeper*>(owner);
+    const Filter& filter = keeper.filter_;
+    const int entry = keeper.map_.features.entry_of(id);
+    if (entry < 0) return false;
+    const int slot = keeper.map_.features[entry].slot;
+    const Block& block = filter.state().block[slot];
+    if (block.kind == BlockKind::kInverseDepth) {
+      const Scalar rho = block.inverse_depth().rho;
+      if (!(rho > Scalar(0) &&
+            std::sqrt(filter.block_variance(slot, 2)) < tuning::moving_verdict::kMaxDepthSigma * rho))
+        return false;
+    }
+    *p_W = filter.point(slot);
+    return true;
+  };
+  const auto pixel_of = [](const void* owner, const Match& match) {
+    const UnitKeeper& keeper = *static_cast<const UnitKeeper*>(owner);
+    return at_frame_time(keeper.filter_, keeper.map_.features[match.feature].slot, match.measured);
+  };
+  return {this, filter_.lens(), find, pixel_of};
 }
 
 void UnitKeeper::note_forces() {

@@ -5,18 +5,18 @@
 #include "base/arena.h"
 #include "filter/filter.h"
 #include "filter/imu_log.h"
-#include "filter_slam/inertial/force_check.h"
-#include "filter_slam/inertial/moving_start.h"
-#include "filter_slam/inertial/rest_detector.h"
-#include "filter_slam/inertial/rest_hold.h"
-#include "filter_slam/inertial/unit_watch.h"
-#include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/filter_start.h"
 #include "filter_slam/start/metric_start.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 #include "frame/tracking_state.h"
+#include "inertial/body_motion.h"
+#include "inertial/force_check.h"
+#include "inertial/moving_start.h"
+#include "inertial/rest_detector.h"
+#include "inertial/rest_hold.h"
+#include "inertial/unit_watch.h"
 #include "map/map.h"
 
 /// The inertial unit's part of a frame: predicts the body from samples, tests whether images agree with them, and starts metric scale and
@@ -97,6 +97,7 @@ class UnitKeeper {
     ForceCheck forces;
   };
 
+  MovingPoints moving_points() const;
   void note_forces();
   bool reads_force() const;
   bool begins_at_rest();
@@ -127,7 +128,7 @@ void UnitKeeper::measure(bool follows, F&& measure) {
   bool again = false;
   if (holds()) {
     mode.max_pose_nis = watch_.begin_measuring(follows);
-    if (!watch_.is_refused(measure(again, mode))) return;
+    if (!watch_.is_refused(measure(again, mode).is_contradicted)) return;
     parts_->hold.take_back();
     advance(parts_->hold.before_ns(), false, false);
     frame_.begin_again();
@@ -137,7 +138,7 @@ void UnitKeeper::measure(bool follows, F&& measure) {
   mode.depths_first = parts_ != nullptr && parts_->hold.has_just_ended(frame_.report.t_ns);
   const UpdateOutcome outcome = measure(again, mode);
   if (outcome.is_pose_open) parts_->hold.forget();
-  if (!watch_.is_refused(outcome)) return;
+  if (!watch_.is_refused(outcome.is_contradicted)) return;
   watch_.leave_prediction();
   frame_.begin_again();
   measure(true, UpdateMode());

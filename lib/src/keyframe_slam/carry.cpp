@@ -19,11 +19,11 @@ void MapPlacement::carry(Archive& archive) {
 
 /// The tables of the map have been carried. Where there is a pose there is a keyframe, except in a map that was loaded and is not found.
 void KeyframeSlam::carry(Archive& archive) {
-  auto& [body_ns, since_last_ns, median_depth, is_map_fixed, young, second, frozen, warnings] = data_;
+  auto& [body_ns, since_last_ns, median_depth, is_map_fixed, follows, young, second, frozen, warnings] = data_;
   auto& [given, second_ns, second_W, estimated, estimate_W] = second;
   archive.any(body_ns, since_last_ns, second_ns);
   archive.numbers(median_depth, second_W, estimate_W);
-  archive.flags(is_map_fixed, young, given, estimated);
+  archive.flags(is_map_fixed, follows, young, given, estimated);
   frozen.carry(archive);
   warnings.carry(archive);
   map_.carry(archive);
@@ -40,6 +40,7 @@ void KeyframeSlam::carry(Archive& archive) {
   mapping_.carry(archive);
   start_.carry(archive);
   placement_.carry(archive);
+  unit_.carry(archive);
   if (!archive.is_reading()) return;
   const bool is_lost_in_loaded = start_.is_in_loaded_map() && map_.tables().features.count() == 0;
   archive.require(!tracking_.has_pose() || (motion_.is_sound() && (map_.keyframes.count() > 0 || is_lost_in_loaded)));

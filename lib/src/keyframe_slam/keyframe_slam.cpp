@@ -31,6 +31,7 @@ bool KeyframeSlam::layout(Arena& arena) {
   mapping_.layout(arena);
   planes_.layout(arena);
   placement_.layout(arena);
+  unit_.layout(arena);
   relocaliser_.layout(arena);
   record_.layout(arena);
   return start_.layout(arena);
@@ -47,6 +48,7 @@ void KeyframeSlam::init() {
   pose_.init();
   mapping_.init();
   placement_.init();
+  unit_.init();
   relocaliser_.init();
   record_.init();
   start_.init();
@@ -65,9 +67,11 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  const bool may_leave = !start_.is_in_loaded_map() && !map_.tables().planes.has_known();
+  const bool has_walls = map_.tables().planes.has_known();
+  const bool may_leave = !start_.is_in_loaded_map() && !has_walls;
   const bool is_gone = may_leave && tracking_.needs_new_map(settings_.restart_ns);
-  if (is_gone || (data_.is_map_fixed && tracking_.has_pose() && !map_.tables().planes.has_known())) {
+  const bool is_fixed = data_.is_map_fixed && tracking_.has_pose() && !has_walls;
+  if (is_gone || is_fixed) {
     const std::uint32_t map_id = tracking_.map_id();
     if (is_gone) relocaliser_.leave_map(map_id);
     discard_map();
@@ -78,6 +82,11 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
                                 : "part of the image stands still while the rest moves, and is masked from now on");
   }
   measure();
+  if (unit_.take_pose(map_of_unit())) {
+    frame_.begin_again();
+    measure();
+    unit_.take_pose_again(map_of_unit());
+  }
   data_.is_map_fixed = search_.note_fixed();
   learn();
   if (data_.second.given && data_.second.has_come(t_ns)) placement_.scale_by_second_pose(&data_.median_depth);
@@ -97,10 +106,13 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   data_.since_last_ns = frame_.report.frames > 0 ? elapsed_ns(before_ns, t_ns) : 0;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
+  data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !record_.progress().pending();
   tracking_.begin_frame(data_.since_last_ns);
   if (!tracking_.has_pose() || data_.since_last_ns == 0) return motion_.forget_control();
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
-  motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
+  const bool coasts = tracking_.coasting_or_lost();
+  if (!unit_.predict(before_ns, data_.follows, coasts, nothing_measured, data_.median_depth))
+    motion_.advance(before_ns, t_ns, coasts, nothing_measured);
 }
 
 /// Finds the pose of the frame, by the method that belongs to the state.
@@ -125,6 +137,7 @@ void KeyframeSlam::measure() {
   if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report)) {
     const CameraView before = motion_.view();
     if (!record_.improve()) return;
+    unit_.begin_map();
     placement_.keep_anchors(before, motion_.view());
     mapping_.adjust();
   }
@@ -146,7 +159,12 @@ void KeyframeSlam::learn() {
     placement_.begin_at_walls(&data_.median_depth);
   const bool is_adjusted =
       newest >= 0 && map_.keyframes[newest].t_ns == frame_.report.t_ns && map_.keyframes.count() > 1;
-  if (tracked && is_adjusted && !record_.progress().pending()) placement_.tend_walls(&data_.median_depth);
+  if (tracked && is_adjusted && !record_.progress().pending()) {
+    placement_.follow_unit(&data_.median_depth);
+    placement_.tend_walls(&data_.median_depth);
+  }
+  MovingSolution solution;
+  if (unit_.look_for_scale(map_of_unit(), &solution)) placement_.scale_by_unit(solution, &data_.median_depth);
   // A keyframe has work enough.
   if (!tracked || is_keyframe || record_.progress().pending()) return;
   relocaliser_.note_view(data_.median_depth);
@@ -154,8 +172,20 @@ void KeyframeSlam::learn() {
   if (join.map_id != 0) placement_.join(join, &data_.median_depth);
 }
 
+MapOfUnit KeyframeSlam::map_of_unit() const {
+  MapOfUnit map;
+  map.is_tracked = tracking_.is_tracked(frame_.report);
+  map.is_pending = record_.progress().recording;
+  map.knows_scale = placement_.knows_scale();
+  map.map_id = tracking_.map_id();
+  map.median_depth = data_.median_depth;
+  map.correlation = noise_.correlation_frames();
+  return map;
+}
+
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
+  if (unit_.leaves_metres(map_of_unit(), data_.follows, data_.since_last_ns)) placement_.leave_metres();
   if (tracking_.has_pose() && !motion_.is_sound()) {
     const std::uint32_t map_id = tracking_.map_id();
     discard_map();
@@ -186,6 +216,7 @@ void KeyframeSlam::discard_map() {
   search_.forget_view();
   mapping_.init();
   placement_.init();
+  unit_.begin_map();
 }
 
 }  // namespace pf

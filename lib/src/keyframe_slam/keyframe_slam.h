@@ -26,8 +26,11 @@ class Archive;
 
 class KeyframeSlam {
  public:
-  KeyframeSlam(const Settings& settings, Map& map)
-      : settings_(settings), map_{settings, map, frame_}, anchors_{map.anchors, map_, planes_} {}
+  KeyframeSlam(const Settings& settings, Map& map, const ImuLog& imu)
+      : settings_(settings),
+        map_{settings, map, frame_},
+        anchors_{map.anchors, map_, planes_},
+        unit_{settings, map_, frame_, imu, motion_} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
@@ -53,6 +56,7 @@ class KeyframeSlam {
   std::int64_t body_ns() const { return data_.body_ns; }
   /// Keeps the map: its adjustment has the map's covariance, and it saves the map.
   const KeyframeMapping& mapping() const { return mapping_; }
+  const KeyframeUnit& unit() const { return unit_; }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
@@ -65,6 +69,7 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     bool is_map_fixed = false;       ///< the map has come from what stands still in the image
+    bool follows = false;            ///< the frame before was tracked
     bool young = false;  ///< in this frame so few points have a depth that those without are used for the pose
     SecondPose second;
     FrozenCamera frozen;
@@ -76,6 +81,7 @@ class KeyframeSlam {
   void measure();
   void learn();
   void discard_map();
+  MapOfUnit map_of_unit() const;
 
   const Settings& settings_;
   Frame frame_;
@@ -86,6 +92,7 @@ class KeyframeSlam {
   KeyframeMotion motion_{settings_};
   KeyframePlanes planes_{settings_, map_};
   KeyframeAnchors anchors_;
+  KeyframeUnit unit_;
   PointSearch search_{settings_, map_, planes_, frame_, noise_};
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
@@ -96,8 +103,8 @@ class KeyframeSlam {
   KeyframeStart start_{
       settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
       mapping_.saving(), record_, data_.second};
-  MapPlacement placement_{settings_, map_,     frame_,       tracking_, motion_, planes_,
-                          anchors_,  mapping_, relocaliser_, record_,   start_,  data_.second};
+  MapPlacement placement_{settings_, map_,         frame_,  tracking_, motion_, planes_,     anchors_,
+                          mapping_,  relocaliser_, record_, start_,    unit_,   data_.second};
 };
 
 }  // namespace pf

@@ -30,8 +30,10 @@ void MapPlacement::begin_at_walls(Scalar* median_depth) {
 
 Mat6 MapPlacement::map_covariance(const Vec3& p_W) const {
   const KeyframeAdjustment& adjustment = mapping_.adjustment();
-  if (!walls_.has_begun()) return adjustment.map_covariance();
-  return adjustment.shape().given_held + walls_.pose_covariance(p_W);
+  Mat6 P = walls_.has_begun() ? Mat6(adjustment.shape().given_held + walls_.pose_covariance(p_W))
+                              : adjustment.map_covariance();
+  P.bottomRightCorner<3, 3>() += unit_.covariance_of_scale(p_W, start_.first_place_W());
+  return P;
 }
 
 void MapPlacement::tend_walls(Scalar* median_depth) {
@@ -45,10 +47,7 @@ void MapPlacement::tend_walls(Scalar* median_depth) {
     move(Similarity::about(first_W, factor), median_depth);
     walls_.meet(start_.first_covariance(), first_W);
     const std::uint32_t before = tracking_.map_id();
-    if (tracking_.state() != SlamState::kStarting) {
-      tracking_.rename_map();
-      map_.tables().anchors.move(before, tracking_.map_id(), Similarity());
-    }
+    rename_map();
     settings_.hooks.say("walls of the plan come into view: map ", before, " is scaled by ", fixed(factor, 3),
                         " and goes on as map ", tracking_.map_id(), " in metres");
   } else {
@@ -81,6 +80,42 @@ void MapPlacement::scale_by_second_pose(Scalar* median_depth) {
                       ", to the distance of the second pose");
 }
 
+bool MapPlacement::knows_scale() const {
+  const PlaneTable& planes = map_.tables().planes;
+  return start_.is_at_target() || start_.is_in_loaded_map() || second_.given ||
+         (planes.has_known() && !planes.has_apart());
+}
+
+/// Where poses were given out in the old unit.
+void MapPlacement::rename_map() {
+  if (tracking_.state() == SlamState::kStarting) return;
+  const std::uint32_t before = tracking_.map_id();
+  tracking_.rename_map();
+  map_.tables().anchors.move(before, tracking_.map_id(), Similarity());
+}
+
+void MapPlacement::scale_by_unit(const MovingSolution& solution, Scalar* median_depth) {
+  const std::uint32_t before = tracking_.map_id();
+  if (!unit_.is_from_motion()) {
+    settings_.hooks.say("gravity and the biases of the inertial unit are known in map ", before, ", from a rest");
+    return;
+  }
+  move(Similarity::about(Vec3::Zero(), solution.scale), median_depth);
+  rename_map();
+  settings_.hooks.say("map ", before, " is in metres, from ", fixed(solution.span, 1), " s of motion: scaled by ",
+                      fixed(solution.scale, 3), " (sigma ", fixed(100 * solution.sigma_scale(), 1),
+                      " %), gravity within ", degrees(solution.sigma_gravity()), " deg; it goes on as map ",
+                      tracking_.map_id());
+}
+
+void MapPlacement::leave_metres() {
+  const std::uint32_t before = tracking_.map_id();
+  rename_map();
+  settings_.hooks.say("lengths of map ", before,
+                      " are no metres, since they came from an inertial unit that is rejected: ", "it goes on as map ",
+                      tracking_.map_id());
+}
+
 /// What the recognised view may be off in the other map, all keyframes may: with the rotation about that view, and the scale away from it.
 void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
   const std::uint32_t before = tracking_.map_id();
@@ -110,6 +145,7 @@ void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
   mapping_.adjustment().move(T);
   map_.tables().anchors.move(tracking_.map_id(), tracking_.map_id(), T);
   relocaliser_.move(T);
+  unit_.move(T);
   *median_depth *= T.s;
   mark_.q_WC = (T.q * mark_.q_WC).normalized();
   mark_.p_W = T.of(mark_.p_W);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "keyframe_slam/inertial/keyframe_unit.h"
 #include "keyframe_slam/keyframe_mapping.h"
 #include "keyframe_slam/memory/keyframe_anchors.h"
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/walls/keyframe_walls.h"
 
-/// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, or walls.
+/// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, walls, or an
+/// inertial unit.
 
 namespace pf {
 
@@ -25,7 +27,8 @@ class MapPlacement {
  public:
   MapPlacement(const Settings& settings, KeyframeMap& map, const Frame& frame, TrackingState& tracking,
                KeyframeMotion& motion, KeyframePlanes& planes, KeyframeAnchors& anchors, KeyframeMapping& mapping,
-               KeyframeRelocaliser& relocaliser, KeyframeRecord& record, KeyframeStart& start, SecondPose& second)
+               KeyframeRelocaliser& relocaliser, KeyframeRecord& record, KeyframeStart& start, KeyframeUnit& unit,
+               SecondPose& second)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -37,6 +40,7 @@ class MapPlacement {
         relocaliser_(relocaliser),
         record_(record),
         start_(start),
+        unit_(unit),
         second_(second) {}
 
   bool layout(Arena& arena) { return walls_.layout(arena); }
@@ -56,6 +60,14 @@ class MapPlacement {
   /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known,
   /// its place is the solved record's.
   void scale_by_second_pose(Scalar* median_depth);
+  /// The inertial unit gives lengths in metres: by motion, where the map is scaled and goes on under another id, or by a rest.
+  void scale_by_unit(const MovingSolution& solution, Scalar* median_depth);
+  /// It does no more, since it is rejected: the map goes on under another id.
+  void leave_metres();
+  /// After the adjustment of a keyframe: the map goes where the samples say that it is.
+  void follow_unit(Scalar* median_depth) { move(unit_.follow_adjustment(mapping_.adjustment()), median_depth); }
+  /// Whether something beside samples gives the unit of length.
+  bool knows_scale() const;
   /// The map is joined to an earlier one: it goes on in that one's W and unit, under its id.
   void join(const MapJoin& join, Scalar* median_depth);
   /// The map has begun again with other poses, of which the newest keyframe has this frame's: anchors stay where they are before it.
@@ -77,6 +89,7 @@ class MapPlacement {
 
  private:
   void move(const Similarity& T, Scalar* median_depth);
+  void rename_map();
 
   const Settings& settings_;
   KeyframeMap& map_;
@@ -89,6 +102,7 @@ class MapPlacement {
   KeyframeRelocaliser& relocaliser_;
   KeyframeRecord& record_;
   KeyframeStart& start_;
+  KeyframeUnit& unit_;
   SecondPose& second_;
   KeyframeWalls walls_{settings_, map_, frame_, planes_};
   MarkedPose mark_;

@@ -7,6 +7,7 @@
 #include "filter/scale_row.h"
 #include "filter_slam/filter_slam.h"
 #include "geometry/so3.h"
+#include "keyframe_slam/keyframe_slam.h"
 
 namespace pf {
 
@@ -15,9 +16,7 @@ namespace {
 /// With R_CB_true = Exp(mu) R_CB and m_true = m + e_m:
 ///
 ///   R_BC_true = Exp(-R_BC mu) R_BC,   p_BC = -R_BC m:   e = -R_BC e_m - R_BC [m]x mu
-void describe_mounting(const Settings& settings, const FilterSlam& slam, InertialView* out) {
-  const Filter& filter = slam.filter();
-  const Mounting mounting = slam.unit().mounting();
+void describe_mounting(const Settings& settings, const Filter& filter, const Mounting& mounting, InertialView* out) {
   const BodyLayout& layout = settings.body;
   const Mat3 R_BC = mounting.R_CB.transpose();
   out->q_BC = Quat(R_BC);
@@ -57,23 +56,23 @@ void describe_mounting(const Settings& settings, const FilterSlam& slam, Inertia
     out->sigma[15] = std::sqrt(std::max(Scalar(0), filter.variance(layout.row(BodyPart::kLens) + lens.count - 1)));
 }
 
-}  // namespace
-
-UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam) {
+/// unit: UnitKeeper or KeyframeUnit.
+template <typename Unit>
+UnitDoubt doubt_of(const Settings& settings, const Unit& unit) {
   UnitDoubt doubt;
-  doubt.doubted = is_rejected(slam.unit().watch().mode());
-  doubt.doubted_ns = slam.unit().watch().rejected_ns();
   if (!settings.inertial) return doubt;
-  doubt.reason = static_cast<int>(slam.unit().reason(&doubt.reason_value, &doubt.reason_R_CB));
-  const ImuNoise noise = slam.unit().noise();
+  doubt.doubted = is_rejected(unit.watch().mode());
+  doubt.doubted_ns = unit.watch().rejected_ns();
+  doubt.reason = static_cast<int>(unit.reason(&doubt.reason_value, &doubt.reason_R_CB));
+  const ImuNoise noise = unit.noise();
   doubt.gyro_density = noise.gyro_density;
   doubt.accel_density = noise.accel_density;
   return doubt;
 }
 
-bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out) {
-  if (!settings.inertial || !slam.tracking().has_pose()) return false;
-  const Filter& filter = slam.filter();
+template <typename Unit>
+void describe(const Settings& settings, const Filter& filter, const Unit& unit, bool is_from_motion,
+              InertialView* out) {
   const Body& body = filter.state().body;
   const int gravity = settings.body.row(BodyPart::kGravity), gyro = settings.body.row(BodyPart::kGyroBias);
   out->gravity_W = settings.unit.gravity * body.gravity_W();
@@ -85,13 +84,34 @@ bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialVie
     for (int j = 0; j < 8; ++j)
       out->covariance[i][j] = filter.covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
   out->metric = filter.is_metric();
-  out->from_motion = out->metric && slam.unit().metric().is_from_motion();
-  out->resting = slam.unit().hold().holds();
-  out->rests = slam.unit().hold().rests();
+  out->from_motion = out->metric && is_from_motion;
+  out->resting = unit.hold().holds();
+  out->rests = unit.hold().rests();
   for (int i = 0; i < 8; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));
-  describe_mounting(settings, slam, out);
+  describe_mounting(settings, filter, unit.mounting(), out);
   ScaleRow l;
   if (out->metric && find_scale_row(filter, &l)) out->sigma[16] = std::sqrt(std::max(Scalar(0), filter.variance_of(l)));
+}
+
+}  // namespace
+
+UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam) { return doubt_of(settings, slam.unit()); }
+
+UnitDoubt read_unit_doubt(const Settings& settings, const KeyframeSlam& slam) {
+  return doubt_of(settings, slam.unit());
+}
+
+bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out) {
+  if (!settings.inertial || !slam.tracking().has_pose()) return false;
+  const UnitKeeper& unit = slam.unit();
+  describe(settings, slam.filter(), unit, unit.metric().is_from_motion(), out);
+  return true;
+}
+
+bool read_inertial(const Settings& settings, const KeyframeSlam& slam, InertialView* out) {
+  const KeyframeUnit& unit = slam.unit();
+  if (!settings.inertial || !unit.has_begun()) return false;
+  describe(settings, unit.filter(), unit, unit.is_from_motion(), out);
   return true;
 }
 

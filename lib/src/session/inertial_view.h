@@ -5,11 +5,12 @@
 #include "frame/settings.h"
 #include "geometry/so3.h"
 
-/// The inertial unit's values in the filter back end.
+/// The inertial unit's values, of either back end.
 
 namespace pf {
 
 class FilterSlam;
+class KeyframeSlam;
 
 /// What is known of the inertial unit and of gravity.
 struct InertialView {
@@ -36,8 +37,11 @@ struct UnitDoubt {
 };
 
 UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam);
+UnitDoubt read_unit_doubt(const Settings& settings, const KeyframeSlam& slam);
 
 /// False without the inertial motion model, or without a pose.
 bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out);
+/// The same, and before the map has its first depths.
+bool read_inertial(const Settings& settings, const KeyframeSlam& slam, InertialView* out);
 
 }  // namespace pf

@@ -14,7 +14,9 @@ int KeyframeReader::kept_views() const { return slam_.kept_views(); }
 /// That of the camera against the map, and that of the map against the keyframes that were held fixed.
 void KeyframeReader::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   // Of a frame that repeats the one before, the pose is that one's.
-  slam_.motion().predict_pose(t_ns > slam_.frame().report.t_ns ? slam_.body_ns() : t_ns, t_ns, body, covariance);
+  const std::int64_t now_ns = t_ns > slam_.frame().report.t_ns ? slam_.body_ns() : t_ns;
+  if (!slam_.unit().predict_pose(now_ns, t_ns, body, covariance))
+    slam_.motion().predict_pose(now_ns, t_ns, body, covariance);
   *covariance += slam_.placement().map_covariance(body->p_W);
 }
 

@@ -12,7 +12,7 @@ bool Session::layout(Arena& arena, const Settings& settings) {
   settings_.mask.mask = settings.mask.is_asked_for ? &mask_ : nullptr;
   const auto lay_out = [&](auto& back_end) { back_end.layout(arena); };
   if (has_window)
-    window_ = arena.place<KeyframeSlam>(lay_out, settings_, map_);
+    window_ = arena.place<KeyframeSlam>(lay_out, settings_, map_, imu_);
   else
     filter_ = arena.place<FilterSlam>(lay_out, settings_, map_, imu_);
   return arena.ok();

@@ -27,6 +27,18 @@ TiltView tilt_against(const Vec3& gravity_W, const PlaneView& plane) {
   return out;
 }
 
+/// The same against the gravity that an inertial unit measures, independent of the plane: g may be rotated by d about two axes.
+TiltView tilt_against(const InertialView& unit, const PlaneView& plane) {
+  TiltView out = tilt_against(unit.gravity_W, plane);
+  const Vec3 g_W = unit.gravity_W.normalized();
+  Mat2 C;
+  C << unit.covariance[0][0], unit.covariance[0][1], unit.covariance[1][0], unit.covariance[1][1];
+  const Vec2 by_d(plane.normal_W.dot(unit.axis_W[0].cross(g_W)), plane.normal_W.dot(unit.axis_W[1].cross(g_W)));
+  out.sigma_up = std::sqrt(out.sigma_up * out.sigma_up + std::max(Scalar(0), by_d.dot(C * by_d)));
+  out.sigma_tilt = std::sqrt(out.sigma_tilt * out.sigma_tilt + std::max(Scalar(0), C.trace()));
+  return out;
+}
+
 }  // namespace
 
 View::View(const Settings& settings, const Map& map, const FilterSlam& slam)
@@ -106,7 +118,9 @@ PlaneView View::plane(int i) const {
 
 TiltView View::tilt(int i, const PlaneView& plane, const Vec3& given_W) const {
   if (given_W.norm() > Scalar(0)) return tilt_against(given_W, plane);
-  return filter_ != nullptr ? FilterReader(settings_, map_, *filter_).tilt(i) : TiltView();
+  if (filter_ != nullptr) return FilterReader(settings_, map_, *filter_).tilt(i);
+  InertialView unit;
+  return inertial(&unit) && unit.metric ? tilt_against(unit, plane) : TiltView();
 }
 
 bool View::hit(const Vec2& pixel, HitView* hit) const {
@@ -137,9 +151,13 @@ bool View::template_of(std::uint32_t id, TemplateView* out) const {
   return true;
 }
 
-bool View::inertial(InertialView* out) const { return filter_ != nullptr && read_inertial(settings_, *filter_, out); }
+bool View::inertial(InertialView* out) const {
+  return filter_ != nullptr ? read_inertial(settings_, *filter_, out) : read_inertial(settings_, *keyframes_, out);
+}
 
-UnitDoubt View::unit_doubt() const { return filter_ != nullptr ? read_unit_doubt(settings_, *filter_) : UnitDoubt(); }
+UnitDoubt View::unit_doubt() const {
+  return filter_ != nullptr ? read_unit_doubt(settings_, *filter_) : read_unit_doubt(settings_, *keyframes_);
+}
 
 bool View::gauge_information(double* scratch, double* information) const {
   return pf::gauge_information(filter_->filter(), scratch, information);

@@ -5,13 +5,6 @@
 
 namespace pf {
 
-void KeptMounting::carry(Archive& archive) {
-  if (kept_ == nullptr) return;
-  auto& [mounting, covariance] = *kept_;
-  pf::carry(archive, mounting);
-  for (int i = 0; i < num_rows() * num_rows(); ++i) archive.numbers(covariance[i]);
-}
-
 void MapBeginning::carry(Archive& archive) {
   auto& [known, begin_ns, covariance] = data_;
   pf::carry(archive, known);

@@ -2,10 +2,10 @@
 
 #include "base/elapsed.h"
 #include "base/table_entries.h"
-#include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/walls_apart.h"
 #include "frame/tuning.h"
 #include "geometry/lens_deviation.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 namespace {

@@ -6,9 +6,7 @@
 #include "filter_slam/features/feature_keeper.h"
 #include "filter_slam/features/feature_search.h"
 #include "filter_slam/memory/filter_memory.h"
-#include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
-#include "filter_slam/start/kept_mounting.h"
 #include "filter_slam/start/map_beginning.h"
 #include "filter_slam/start/start_recorder.h"
 #include "frame/frame.h"
@@ -16,6 +14,8 @@
 #include "frame/start/start.h"
 #include "frame/start/start_at_target.h"
 #include "frame/tracking_state.h"
+#include "inertial/body_motion.h"
+#include "inertial/kept_mounting.h"
 #include "map/map.h"
 
 /// Starts the filter by the caller's method: at a known pose, at a target, or from a record of the first frames.

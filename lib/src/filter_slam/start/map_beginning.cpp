@@ -2,11 +2,11 @@
 
 #include "base/limits.h"
 #include "base/table_entries.h"
-#include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/tuning.h"
 #include "frame/start/tuning.h"
 #include "frame/tuning.h"
 #include "geometry/planar_pose.h"
+#include "inertial/tuning.h"
 #include "model/camera_at.h"
 #include "model/reference_camera.h"
 

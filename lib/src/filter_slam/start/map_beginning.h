@@ -3,12 +3,12 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "filter_slam/pose/body_motion.h"
-#include "filter_slam/start/kept_mounting.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 #include "frame/start/start.h"
 #include "frame/tracking_state.h"
+#include "inertial/body_motion.h"
+#include "inertial/kept_mounting.h"
 #include "map/map.h"
 
 /// Begins a map in the filter: empties it, and sets the first body with its covariance.

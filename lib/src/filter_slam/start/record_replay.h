@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/settings.h"
 #include "frame/start/start_without_target.h"
+#include "inertial/body_motion.h"
 #include "map/map.h"
 
 /// Repeats the recorded frames of a start in the filter, which begins at the record's first frame.

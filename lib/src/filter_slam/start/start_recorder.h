@@ -3,13 +3,13 @@
 #include "filter/filter.h"
 #include "filter_slam/features/corner_features.h"
 #include "filter_slam/features/feature_keeper.h"
-#include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/map_beginning.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 #include "frame/start/start_at_target.h"
 #include "frame/start/start_without_target.h"
+#include "inertial/body_motion.h"
 #include "map/map.h"
 
 /// Records the first frames beside the filter, and begins the filter again where the record has better depths.

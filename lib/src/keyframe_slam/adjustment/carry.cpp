@@ -16,10 +16,10 @@ void KeyframeAdjustment::carry(Archive& archive) {
   choice_.carry(archive);
   target_.carry(archive);
   archive.numbers(map_covariance_);
-  auto& [keyframes, is_determined, is_away, given_held, held_span] = shape_;
+  auto& [keyframes, is_determined, is_away, given_held, held_span, from_held] = shape_;
   archive.within(keyframes, 1, Archive::kMaxCount);
   archive.flags(is_determined, is_away);
-  archive.numbers(given_held, held_span);
+  archive.numbers(given_held, held_span, from_held);
 }
 
 }  // namespace pf

@@ -1,6 +1,7 @@
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bundle/bearing.h"
 #include "geometry/so3.h"
@@ -114,7 +115,11 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
   const AdjustedPoses& poses = bundle_.poses;
   const int newest = poses.free - 1;
   map_covariance_ = given_held;
-  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0};
+  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0, Vec3::Zero()};
+  Vec3 sum = Vec3::Zero();
+  for (int a = poses.free; a < poses.seen_in; ++a) sum += poses.pose[a].p_W;
+  if (poses.seen_in > poses.free)
+    shape_.from_held = poses.pose[newest].p_W - sum / static_cast<Scalar>(poses.seen_in - poses.free);
   for (int a = poses.free; a < poses.seen_in; ++a)
     for (int b = poses.free; b < a; ++b)
       shape_.held_span = std::max(shape_.held_span, (poses.pose[a].p_W - poses.pose[b].p_W).norm());
@@ -129,6 +134,17 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
     map_covariance_ += A * map_.keyframes[held].covariance * A.transpose();
   }
   map_.keyframes[poses.keyframe[newest]].covariance = map_covariance_;
+}
+
+MapDrift KeyframeAdjustment::drift() const {
+  MapDrift drift;
+  if (!shape_.is_away) return drift;
+  drift.any = true;
+  drift.Q = shape_.given_held / static_cast<Scalar>(shape_.keyframes);
+  const Vec3& r = shape_.from_held;
+  const Scalar along = r.dot(drift.Q.bottomRightCorner<3, 3>() * r), r2 = r.squaredNorm();
+  drift.sigma_scale = along < r2 * r2 ? std::sqrt(along) / r2 : Scalar(1);
+  return drift;
 }
 
 void KeyframeAdjustment::set_place_covariance(const Mat6& of_held) {

@@ -21,6 +21,14 @@ struct AdjustmentShape {
   bool is_away = false;            ///< the map's first keyframe is not connected with the newest one
   Mat6 given_held = Mat6::Zero();  ///< covariance of the newest keyframe's (theta, p), given those that were held fixed
   Scalar held_span = 0;            ///< largest distance of two of these, which holds the size of the map
+  Vec3 from_held = Vec3::Zero();   ///< where the newest keyframe is from the mean place of these
+};
+
+/// What the map about the newest keyframe may have moved in W since the keyframe before.
+struct MapDrift {
+  bool any = false;
+  Mat6 Q = Mat6::Zero();   ///< of (theta, p)
+  Scalar sigma_scale = 0;  ///< the share by which its size may have changed
 };
 
 class KeyframeAdjustment {
@@ -41,6 +49,9 @@ class KeyframeAdjustment {
   /// Of the newest keyframe's (theta, p) in W, and with it of the map about it, given the map's first keyframe.
   const Mat6& map_covariance() const { return map_covariance_; }
   const AdjustmentShape& shape() const { return shape_; }
+  /// Where no keyframe that was held is the map's first, the newest one may have moved against W by its share of what it may have moved
+  /// against those that were held, and its size by how far it may have moved away from these, over its distance from them.
+  MapDrift drift() const;
   /// Variance of ln rho of a point, by the last adjustment and given the keyframes that it held: others are not taken as exact. Zero where
   /// the point had no part in it, or nothing was determined.
   Scalar log_rho_variance(int row) const;
@@ -55,6 +66,7 @@ class KeyframeAdjustment {
     map_covariance_ = T.of_pose_covariance(map_covariance_);
     shape_.given_held = T.of_pose_covariance(shape_.given_held);
     shape_.held_span *= T.s;
+    shape_.from_held = T.s * (T.q * shape_.from_held);
   }
   HeldTarget& target() { return target_; }
 

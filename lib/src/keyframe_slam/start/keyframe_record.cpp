@@ -136,7 +136,7 @@ void KeyframeRecord::move_view(KeyframePoint* point, std::int64_t seen_ns) const
 void KeyframeRecord::set_speeds(Body* body) const {
   const StartRecord& record = solver_.record();
   const int last = record.frames() - 1, before = std::max(0, last - kSpeedFrames);
-  if (!settings_.constant_velocity || before >= last) return;
+  if (!(settings_.constant_velocity || settings_.inertial) || before >= last) return;
   const CameraView then = solver_.view(before), now = solver_.view(last);
   const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(record.frame(before).t_ns, record.frame(last).t_ns)));
   body->v_W = (now.c_W - then.c_W) / dt;

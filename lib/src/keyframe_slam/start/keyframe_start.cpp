@@ -117,9 +117,9 @@ void KeyframeStart::set_pose(bool at_target) {
       for (int i = first; i < first + 3; ++i) trace += known_.covariance[i * dim + i];
       return std::sqrt(trace / 3);
     };
-    if (settings_.constant_velocity) {
+    if (settings_.constant_velocity || settings_.inertial) {
       speed = sigma(settings_.body.row(BodyPart::kVelocity));
-      rate = sigma(settings_.body.row(BodyPart::kAngularVelocity));
+      rate = sigma(settings_.body.row(BodyPart::kVelocity) + 3);
     }
   }
   motion_.set(body, P, speed, rate);

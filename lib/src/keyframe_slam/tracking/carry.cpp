@@ -8,9 +8,11 @@
 namespace pf {
 
 void KeyframeMotion::carry(Archive& archive) {
-  auto& [body, P, dv_C, dw_C] = data_;
+  auto& [body, P, dv_C, dw_C, measured] = data_;
+  auto& [is_set, q_WC, p_W, R] = measured;
   pf::carry(archive, body);
-  archive.numbers(P, dv_C, dw_C);
+  archive.numbers(P, dv_C, dw_C, q_WC, p_W, R);
+  archive.flags(is_set);
 }
 
 /// Points that were searched for are those of a frame that is over.

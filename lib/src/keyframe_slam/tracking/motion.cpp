@@ -24,9 +24,10 @@ Scalar largest_variance(const KeyframeMotion::Covariance& P, int first_row) {
 
 void KeyframeMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate) {
   data_.body = body;
+  data_.measured.is_set = false;
   data_.P.setZero();
   data_.P.topLeftCorner<6, 6>() = pose;
-  if (!settings_.constant_velocity) return;
+  if (!has_velocity()) return;
   for (int i = 0; i < 3; ++i) {
     data_.P(kVelocity + i, kVelocity + i) = speed * speed;
     data_.P(kVelocity + 3 + i, kVelocity + 3 + i) = rate * rate;
@@ -40,10 +41,10 @@ void KeyframeMotion::set_pose_covariance(const Mat6& pose) {
 }
 
 void KeyframeMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
-  if (settings_.constant_velocity)
-    predict_constant_velocity(body, settings_.body, dt, noise, transition);
+  if (has_velocity())
+    predict_constant_velocity(body, layout(), dt, noise, transition);
   else
-    predict_constant_position(body, settings_.body, dt, noise, transition);
+    predict_constant_position(body, layout(), dt, noise, transition);
 }
 
 /// P+ = F P Fᵀ + Q over the rows that move. In float the diagonal gets back what rounding may have taken from it
@@ -67,17 +68,18 @@ void KeyframeMotion::apply(const Transition& transition, Data* data) {
 
 void KeyframeMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, t_ns), kMaxGapNs)));
+  data_.measured.is_set = false;
   if (data_.dv_C != Vec3::Zero() || data_.dw_C != Vec3::Zero()) {
     Transition control;
-    change_velocity(data_.body, settings_.body, data_.dv_C, data_.dw_C, &control);
+    change_velocity(data_.body, layout(), data_.dv_C, data_.dw_C, &control);
     apply(control, &data_);
     forget_control();
   }
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
-    if (settings_.constant_velocity && nothing_measured) damp(dt);
-    const int linear = settings_.constant_velocity ? kVelocity : Body::kPosition;
-    noise = limited_noise(noise, settings_.constant_velocity, largest_variance(data_.P, Body::kTheta),
+    if (has_velocity() && nothing_measured) damp(dt);
+    const int linear = has_velocity() ? kVelocity : Body::kPosition;
+    noise = limited_noise(noise, has_velocity(), largest_variance(data_.P, Body::kTheta),
                           largest_variance(data_.P, linear));
   }
   Transition transition;
@@ -91,7 +93,7 @@ void KeyframeMotion::damp(Scalar dt) {
   Vec3 rate = data_.body.w_C;
   limit_speed(dt, largest_variance(data_.P, Body::kTheta), largest_variance(data_.P, Body::kPosition), &rate, &P_speed);
   Transition transition;
-  damp_speed(data_.body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
+  damp_speed(data_.body, layout(), speed_decay(dt), rate, P_speed, &transition);
   apply(transition, &data_);
 }
 
@@ -115,7 +117,15 @@ bool KeyframeMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) 
   const Vec6 dv = K_v.lazyProduct(e.cast<double>()).cast<Scalar>();
   data_.body.q_WC = q_WC;
   data_.body.p_W = p_W;
-  if (settings_.constant_velocity) {
+  data_.measured = {false, q_WC, p_W, R.cast<Scalar>()};
+  SmallCholesky<6, double> predicted;
+  if (predicted.factor(A)) {
+    const Vec6 more = R.lazyProduct(predicted.solve<1>(Eigen::Matrix<double, 6, 1>(e.cast<double>()))).cast<Scalar>();
+    data_.measured.q_WC = (exp_so3(more.head<3>()) * q_WC).normalized();
+    data_.measured.p_W += more.tail<3>();
+    data_.measured.is_set = true;
+  }
+  if (has_velocity()) {
     data_.body.v_W += dv.head<3>();
     data_.body.w_C += dv.tail<3>();
   }

@@ -31,6 +31,12 @@ class KeyframeMotion {
     data_.dw_C += dw_C;
   }
   void forget_control() { data_.dv_C = data_.dw_C = Vec3::Zero(); }
+  /// The body as something else has predicted it to the frame's time, in place of advance().
+  void set_prediction(const Body& body, const Covariance& P) {
+    data_.body = body;
+    data_.P = P;
+    data_.measured.is_set = false;
+  }
   /// Predicts the body from one frame's time to the next, with the control that was pushed. Without measurements its speed decays.
   void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
   /// Updates the body with a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
@@ -55,6 +61,16 @@ class KeyframeMotion {
     data_.body.v_W = v_W;
     data_.body.w_C = w_C;
   }
+  /// What this frame's pixels alone have measured of the pose. A fit x to them and to the prediction x_p, with its covariance P, is
+  ///
+  ///   (P⁻¹ + R⁻¹) x = P⁻¹ x_p + R⁻¹ z,   z = x + R P⁻¹ (x - x_p)
+  struct MeasuredPose {
+    bool is_set = false;
+    Quat q_WC = Quat::Identity();
+    Vec3 p_W = Vec3::Zero();
+    Mat6 R = Mat6::Zero();
+  };
+  const MeasuredPose& measured() const { return data_.measured; }
   /// All of W is moved.
   void move(const Similarity& T);
   /// Sets the pose's covariance alone, and drops its correlation with the velocities.
@@ -77,8 +93,12 @@ class KeyframeMotion {
     Body body;
     Covariance P = Covariance::Zero();  ///< of (theta, p, v, w); without velocities their rows are zero
     Vec3 dv_C = Vec3::Zero(), dw_C = Vec3::Zero();
+    MeasuredPose measured;
   };
 
+  /// With an inertial unit too: it moves another body, and this one where its samples cannot.
+  bool has_velocity() const { return settings_.constant_velocity || settings_.inertial; }
+  BodyLayout layout() const { return settings_.inertial ? BodyLayout::with_constant_velocity() : settings_.body; }
   void predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
   static void apply(const Transition& transition, Data* data);
   void damp(Scalar dt);

@@ -127,18 +127,12 @@ void KeyframeWalls::place(int k) {
 }
 
 /// The pixels of a keyframe take part in as many adjustments as there are keyframes in one, so the n-th adjustment of a plane that has been
-/// seen in n keyframes of K counts for the share of the newest: R = min(n, K) Sigma. Where no keyframe that is held is the map's first, the
-/// newest one may have moved against W since the last one, by its share of what it may have moved against those that are held. Those hold
-/// the size of what follows over their own span alone.
+/// seen in n keyframes of K counts for the share of the newest: R = min(n, K) Sigma.
 Similarity KeyframeWalls::compare(const KeyframeAdjustment& adjustment) {
   const AdjustmentShape& shape = adjustment.shape();
-  const Scalar share = Scalar(1) / static_cast<Scalar>(shape.keyframes);
   const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
-  if (shape.is_away && newest.number != newest_compared_) {
-    const Mat6 Q = share * shape.given_held;
-    const Scalar sigma = std::sqrt(Q.bottomRightCorner<3, 3>().trace() / 3);
-    gauge_.drift(Q, newest.p_W, shape.held_span > sigma ? sigma / shape.held_span : Scalar(1));
-  }
+  const MapDrift drift = adjustment.drift();
+  if (drift.any && newest.number != newest_compared_) gauge_.drift(drift.Q, newest.p_W, drift.sigma_scale);
   newest_compared_ = newest.number;
   int count = 0;
   for (const int k : used_entries(table_)) {

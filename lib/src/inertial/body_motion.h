@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "filter_slam/pose/unit_noise.h"
 #include "frame/settings.h"
+#include "inertial/unit_noise.h"
 
 /// Predicts the body: to the time of each frame in the filter, and to later times for display.
 

@@ -1,10 +1,10 @@
-#include "filter_slam/pose/unit_noise.h"
+#include "inertial/unit_noise.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter_slam/pose/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 

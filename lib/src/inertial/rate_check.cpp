@@ -1,10 +1,10 @@
-#include "filter_slam/inertial/rate_check.h"
+#include "inertial/rate_check.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter_slam/inertial/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 

@@ -4,9 +4,9 @@
 
 #include "filter/imu_log.h"
 #include "filter/inertial_motion.h"
-#include "filter_slam/pose/unit_noise.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
+#include "inertial/unit_noise.h"
 
 /// Detects a camera at rest from the samples of its inertial unit and the image together: samples do not show a slow turntable, and the
 /// image does not show motion together with the scene (lib/docs/theory/inertial.md).

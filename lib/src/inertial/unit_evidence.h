@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "filter_slam/inertial/unit_mode.h"
-#include "filter_slam/pose/unit_noise.h"
 #include "frame/frame.h"
+#include "inertial/unit_mode.h"
+#include "inertial/unit_noise.h"
 
 /// Evidence against an inertial unit whose samples move the body, frame by frame. See lib/docs/theory/inertial.md.
 ///

@@ -1,4 +1,4 @@
-#include "filter_slam/pose/body_motion.h"
+#include "inertial/body_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "filter/imu_log.h"
-#include "filter_slam/inertial/unit_reason.h"
 #include "frame/settings.h"
+#include "inertial/unit_reason.h"
 
 /// Tests whether the accelerometer reads specific force in m/s². Over seconds, in axes that do not rotate, a hand's accelerations average
 /// out, and the mean is gravity's: about 9.81.

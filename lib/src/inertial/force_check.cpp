@@ -1,9 +1,9 @@
-#include "filter_slam/inertial/force_check.h"
+#include "inertial/force_check.h"
 
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter_slam/inertial/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 

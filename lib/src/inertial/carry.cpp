@@ -1,11 +1,13 @@
 #include "model/carry.h"
 
-#include "filter_slam/inertial/force_check.h"
-#include "filter_slam/inertial/moving_start.h"
-#include "filter_slam/inertial/rate_check.h"
-#include "filter_slam/inertial/rest_detector.h"
-#include "filter_slam/inertial/rest_hold.h"
-#include "filter_slam/inertial/unit_watch.h"
+#include "inertial/body_motion.h"
+#include "inertial/force_check.h"
+#include "inertial/kept_mounting.h"
+#include "inertial/moving_start.h"
+#include "inertial/rate_check.h"
+#include "inertial/rest_detector.h"
+#include "inertial/rest_hold.h"
+#include "inertial/unit_watch.h"
 
 namespace pf {
 namespace {
@@ -28,6 +30,27 @@ void carry_fit(Archive& archive, RateFit& fit) {
 }
 
 }  // namespace
+
+void UnitNoise::carry(Archive& archive) {
+  auto& [last_ns, second, third, count, white, excess] = data_;
+  archive.any(last_ns);
+  archive.counts(count);
+  archive.numbers(second, third, white, excess);
+}
+
+void BodyMotion::carry(Archive& archive) {
+  auto& [given, dv_C, dw_C] = data_;
+  archive.flags(given);
+  archive.numbers(dv_C, dw_C);
+  noise_.carry(archive);
+}
+
+void KeptMounting::carry(Archive& archive) {
+  if (kept_ == nullptr) return;
+  auto& [mounting, covariance] = *kept_;
+  pf::carry(archive, mounting);
+  for (int i = 0; i < num_rows() * num_rows(); ++i) archive.numbers(covariance[i]);
+}
 
 void ForceCheck::carry(Archive& archive) {
   auto& [last_ns, begin_ns, count, sum, length, reason, value] = data_;

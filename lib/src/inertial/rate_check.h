@@ -2,10 +2,10 @@
 
 #include "filter/filter.h"
 #include "filter/imu_log.h"
-#include "filter_slam/inertial/rate_alignment.h"
-#include "filter_slam/inertial/unit_evidence.h"
-#include "filter_slam/inertial/unit_reason.h"
 #include "frame/settings.h"
+#include "inertial/rate_alignment.h"
+#include "inertial/unit_evidence.h"
+#include "inertial/unit_reason.h"
 
 /// While samples do not move the body, since the unit is rejected or since its clock or its axes are not known: compares the camera's own
 /// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit gives the reason. What each

@@ -1,4 +1,4 @@
-#include "filter_slam/start/kept_mounting.h"
+#include "inertial/kept_mounting.h"
 
 namespace pf {
 

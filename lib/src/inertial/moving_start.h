@@ -3,11 +3,10 @@
 #include <cstdint>
 
 #include "filter/moving_start.h"
-#include "filter_slam/pose/body_motion.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 #include "geometry/rotation_smoother.h"
-#include "map/map.h"
+#include "inertial/body_motion.h"
 
 /// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames and the integrals of the samples in
 /// between, estimates the poses of these frames anew against the present map, and solves for scale, gravity and the accelerometer's bias
@@ -27,11 +26,21 @@ struct MovingFrame {
   Scalar correlation;    ///< number of consecutive frames whose pixels have the same errors: 1 where each has its own
 };
 
+/// Points of the map of a back end, by which poses are estimated anew.
+struct MovingPoints {
+  const void* owner;
+  const Camera& camera;
+  /// False where the map has no such point, or its depth is not known but for the scale of all.
+  bool (*find)(const void* owner, std::uint32_t id, Vec3* p_W);
+  /// Pixel of an inlier of this frame, at the frame's time.
+  Vec2 (*pixel_of)(const void* owner, const Match& match);
+};
+
 class MovingStart {
  public:
-  MovingStart(const Settings& settings, Filter& filter, const Map& map, const Frame& frame, const ImuLog& imu,
+  MovingStart(const Settings& settings, const Filter& filter, const Frame& frame, const ImuLog& imu,
               const BodyMotion& motion)
-      : settings_(settings), filter_(filter), map_(map), frame_(frame), imu_(imu), motion_(motion) {}
+      : settings_(settings), filter_(filter), frame_(frame), imu_(imu), motion_(motion) {}
 
   void init() {
     data_.count = data_.end = data_.left = 0;
@@ -45,7 +54,7 @@ class MovingStart {
   /// True where accelerations with the opposite sign explain the motion, and the readings do not.
   bool is_reversed() const { return data_.reversed; }
   /// Notes a frame. True where *solution has small sigmas, fits, and both halves of the poses agree.
-  bool note(const MovingFrame& told, MovingSolution* solution);
+  bool note(const MovingFrame& told, const MovingPoints& points, MovingSolution* solution);
 
   void carry(Archive& archive);  ///< base/archive.h
 
@@ -91,11 +100,10 @@ class MovingStart {
     MovingPose pose[kMaxMovingPoses];
   };
 
-  bool add();
+  bool add(const MovingPoints& points);
   bool integrate(std::int64_t from_ns, View* view) const;
-  bool has_depth(int entry) const;
-  bool locate(View* view) const;
-  bool sweep();
+  bool locate(const MovingPoints& points, View* view) const;
+  bool sweep(const MovingPoints& points);
   Vec3 smooth();
   int collect();
   Scalar mean_variance(int row) const;
@@ -110,8 +118,7 @@ class MovingStart {
   void look_for_sign(int count, const MovingStartNoise& noise);
 
   const Settings& settings_;
-  Filter& filter_;
-  const Map& map_;
+  const Filter& filter_;
   const Frame& frame_;
   const ImuLog& imu_;
   const BodyMotion& motion_;

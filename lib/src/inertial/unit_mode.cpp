@@ -1,4 +1,4 @@
-#include "filter_slam/inertial/unit_mode.h"
+#include "inertial/unit_mode.h"
 
 namespace pf {
 namespace {

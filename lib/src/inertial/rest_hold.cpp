@@ -1,11 +1,11 @@
-#include "filter_slam/inertial/rest_hold.h"
+#include "inertial/rest_hold.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
 #include "filter/inertial_motion.h"
-#include "filter_slam/inertial/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 

@@ -100,4 +100,19 @@ inline constexpr Scalar kMaxApart = Scalar(9);             ///< of two halves, i
 inline constexpr int kBetterDelay = 2;                     ///< times better known, before samples are integrated again
 }  // namespace moving_verdict
 
+/// The inertial unit's noise, learned. A frame's innovation over its expectation is a likelihood's slope in the log of the variance.
+namespace unit_noise {
+inline constexpr Scalar kLeast = Scalar(0.3333);    ///< of a density to the stated one
+inline constexpr Scalar kMost = Scalar(10);         ///< the same, at most
+inline constexpr int kMaxGap = 4;                   ///< median intervals that three samples in a row span, at most
+inline constexpr int kWindow = 100;                 ///< samples of which differences are averaged
+inline constexpr Scalar kWhite = Scalar(0.7);       ///< of third to second differences, each over that of white noise
+inline constexpr Scalar kGain = Scalar(0.3);        ///< of the mean over windows
+inline constexpr Scalar kStep = Scalar(4);          ///< change of the variance's factor by a window, at most
+inline constexpr Scalar kRate = Scalar(0.1);        ///< step of the log variance per frame
+inline constexpr Scalar kSlack = Scalar(1.3);       ///< mean share above which innovations are not explained
+inline constexpr Scalar kMostOfFrame = Scalar(5);   ///< nis / dof of one frame, at most
+inline constexpr Scalar kNearBound = Scalar(0.95);  ///< of kMost: no noise explains it
+}  // namespace unit_noise
+
 }  // namespace pf::tuning

@@ -1,14 +1,13 @@
-#include "filter_slam/inertial/moving_start.h"
+#include "inertial/moving_start.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter/frame_pixels.h"
 #include "filter/imu_path.h"
-#include "filter_slam/inertial/tuning.h"
 #include "geometry/pnp.h"
 #include "geometry/so3.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 
@@ -47,7 +46,7 @@ void MovingStart::integrate_again() {
 }
 
 /// Keeps this frame: its inliers, and the samples since the last one that is kept. False where samples are missing.
-bool MovingStart::add() {
+bool MovingStart::add(const MovingPoints& points) {
   const State& state = filter_.state();
   if (data_.count == kMaxMovingPoses) {
     std::copy(data_.view + 1, data_.view + data_.count--, data_.view);
@@ -63,7 +62,7 @@ bool MovingStart::add() {
   for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
     const Match& match = frame_.match(i);
     if (match.status != MatchStatus::kInlier || match.feature < 0) continue;  // it may have left the map since
-    const Vec2 pixel = at_frame_time(filter_, map_.features[match.feature].slot, match.measured);
+    const Vec2 pixel = points.pixel_of(points.owner, match);
     view.seen[view.count++] = {match.id, static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
   }
   data_.t_ns = t_ns;
@@ -72,30 +71,20 @@ bool MovingStart::add() {
   return true;
 }
 
-/// Whether a feature's depth is known, but for the scale of all.
-bool MovingStart::has_depth(int entry) const {
-  const int slot = map_.features[entry].slot;
-  const Block& block = filter_.state().block[slot];
-  if (block.kind != BlockKind::kInverseDepth) return true;
-  const Scalar rho = block.inverse_depth().rho;
-  return rho > Scalar(0) && std::sqrt(filter_.block_variance(slot, 2)) < kMaxDepthSigma * rho;
-}
-
 /// Pose of a view against the present map, with the noise that its pixels show.
-bool MovingStart::locate(View* view) const {
+bool MovingStart::locate(const MovingPoints& points, View* view) const {
   PnpPoint point[kMaxPixels];
   int count = 0;
   for (int i = 0; i < view->count; ++i) {
-    const int entry = map_.features.entry_of(view->seen[i].id);
-    if (entry < 0 || !has_depth(entry)) continue;
-    point[count++] = {filter_.point(map_.features[entry].slot), Scalar(1),
-                      Vec2(static_cast<Scalar>(view->seen[i].x), static_cast<Scalar>(view->seen[i].y))};
+    Vec3 p_W;
+    if (!points.find(points.owner, view->seen[i].id, &p_W)) continue;
+    point[count++] = {p_W, Scalar(1), Vec2(static_cast<Scalar>(view->seen[i].x), static_cast<Scalar>(view->seen[i].y))};
   }
   if (count < kMinPixels) return false;
   PoseEstimate pose;
   pose.q_WC = view->q_WC;
   pose.p_WC = view->p_W;
-  if (!refine_pnp(filter_.lens(), point, count, nullptr, {settings_.sigma_px, kHuber, kRounds}, &pose)) return false;
+  if (!refine_pnp(points.camera, point, count, nullptr, {settings_.sigma_px, kHuber, kRounds}, &pose)) return false;
   view->q_WC = pose.q_WC;
   view->p_W = pose.p_WC;
   const Scalar noise = pose.rms_px / settings_.sigma_px;
@@ -105,10 +94,10 @@ bool MovingStart::locate(View* view) const {
 }
 
 /// Goes on with the sweep, or begins one: of all views behind the last one that sees too little of the map. True where it is through.
-bool MovingStart::sweep() {
+bool MovingStart::sweep(const MovingPoints& points) {
   if (data_.left == 0) data_.left = data_.first = data_.end = data_.count;
   for (int i = 0; i < kLocated && data_.left > 0; ++i) {
-    if (!locate(&data_.view[data_.left - 1])) {
+    if (!locate(points, &data_.view[data_.left - 1])) {
       data_.left = 0;
       break;
     }
@@ -262,7 +251,7 @@ Scalar MovingStart::turn_rate_sigma(Scalar span) const {
   return std::sqrt(std::min(by_map, mean_variance(settings_.body.row(BodyPart::kGyroBias))));
 }
 
-bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
+bool MovingStart::note(const MovingFrame& told, const MovingPoints& points, MovingSolution* solution) {
   if (!told.keep || told.map_id != data_.map_id) init();
   data_.map_id = told.map_id;
   ++data_.frames;
@@ -270,7 +259,7 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
       (data_.count > 0 && seconds(elapsed_ns(data_.t_ns, frame_.report.t_ns)) < static_cast<double>(kInterval)))
     return false;
   data_.correlation = std::max(Scalar(1), told.correlation / static_cast<Scalar>(data_.frames));
-  if (!add()) {
+  if (!add(points)) {
     init();
     return false;
   }
@@ -280,7 +269,7 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
     data_.delay_sigma = delay_sigma;
     integrate_again();
   }
-  if (!told.judge || data_.count < kMinPoses || !sweep()) return false;
+  if (!told.judge || data_.count < kMinPoses || !sweep(points)) return false;
   Scalar span = 0;
   for (int k = data_.first + 1; k < data_.end; ++k) span += data_.view[k].dt;
   if (data_.end - data_.first < kMinPoses || span < kMinSpan) return false;

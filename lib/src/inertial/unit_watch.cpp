@@ -1,4 +1,4 @@
-#include "filter_slam/inertial/unit_watch.h"
+#include "inertial/unit_watch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/elapsed.h"
 #include "filter/inertial_motion.h"
-#include "filter_slam/inertial/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 
@@ -79,11 +79,11 @@ Scalar UnitWatch::begin_measuring(bool follows) {
   return parts_->data.follows ? kMaxPoseNis : Scalar(0);
 }
 
-bool UnitWatch::is_refused(const UpdateOutcome& outcome) {
+bool UnitWatch::is_refused(bool is_contradicted) {
   if (parts_ == nullptr || !parts_->data.follows) return false;
   const FrameReport& report = frame_.report;
   const bool nothing_used = report.inliers == 0;
-  parts_->data.is_contradicted = outcome.is_contradicted || (nothing_used && report.matches >= settings_.min_inliers);
+  parts_->data.is_contradicted = is_contradicted || (nothing_used && report.matches >= settings_.min_inliers);
   return parts_->data.is_contradicted || (nothing_used && report.attempts >= settings_.min_inliers);
 }
 

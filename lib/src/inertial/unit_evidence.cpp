@@ -1,9 +1,9 @@
-#include "filter_slam/inertial/unit_evidence.h"
+#include "inertial/unit_evidence.h"
 
 #include <algorithm>
 
 #include "base/elapsed.h"
-#include "filter_slam/inertial/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 

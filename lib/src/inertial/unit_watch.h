@@ -5,13 +5,12 @@
 #include "base/arena.h"
 #include "filter/filter.h"
 #include "filter/imu_log.h"
-#include "filter_slam/inertial/rate_check.h"
-#include "filter_slam/inertial/unit_evidence.h"
-#include "filter_slam/inertial/unit_mode.h"
-#include "filter_slam/pose/body_motion.h"
-#include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
+#include "inertial/body_motion.h"
+#include "inertial/rate_check.h"
+#include "inertial/unit_evidence.h"
+#include "inertial/unit_mode.h"
 
 /// Decides whether the samples of the inertial unit move the body (UnitMode), by the frames' evidence (lib/docs/theory/inertial.md).
 
@@ -32,11 +31,11 @@ class UnitWatch {
   /// Keeps the body from which this frame's prediction begins.
   void keep_prior(std::int64_t before_ns);
   /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at. Returns
-  /// UpdateMode::max_pose_nis.
+  /// the bound on the NIS of its pose above which it contradicts that prediction; 0: none.
   Scalar begin_measuring(bool follows);
-  /// After it was measured. True where none of it was used, because it contradicts the prediction too strongly or hardly anything was
-  /// found: then it is to be measured again from another prediction.
-  bool is_refused(const UpdateOutcome& outcome);
+  /// After it was measured. is_contradicted: its pose is beyond that bound. True where none of it was used, because it contradicts the
+  /// prediction too strongly or hardly anything was found: then it is to be measured again from another prediction.
+  bool is_refused(bool is_contradicted);
   /// Predicts the body as if no samples had come.
   void leave_prediction();
   /// After the frame was measured again. is_tracked: it is tracked now. If not, the frame is no evidence against the samples.
@@ -46,6 +45,7 @@ class UnitWatch {
   /// An event that concerns the unit. At the beginning and the end of a rest the comparison of rates starts anew.
   void take(UnitEvent event);
   /// UnitEvidence
+  Scalar sum() const { return parts_->evidence.sum(); }
   bool is_map_on_trial() const { return parts_->evidence.is_map_on_trial(); }
 
   /// True where the clock or the axes are open and not found yet.

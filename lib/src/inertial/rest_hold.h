@@ -4,9 +4,9 @@
 
 #include "filter/filter.h"
 #include "filter/imu_log.h"
-#include "filter_slam/inertial/rest_detector.h"
-#include "filter_slam/pose/body_motion.h"
 #include "frame/settings.h"
+#include "inertial/body_motion.h"
+#include "inertial/rest_detector.h"
 
 /// Holds the body while it is at rest: its pose stays, its velocity is zero, and samples are measurements of biases and gravity instead of
 /// motion. See lib/docs/theory/inertial.md.

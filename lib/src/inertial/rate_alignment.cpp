@@ -1,11 +1,11 @@
-#include "filter_slam/inertial/rate_alignment.h"
+#include "inertial/rate_alignment.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter_slam/inertial/tuning.h"
 #include "geometry/symmetric_eigen.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 

@@ -1,11 +1,11 @@
-#include "filter_slam/inertial/rest_detector.h"
+#include "inertial/rest_detector.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
 #include "filter/tuning.h"
-#include "filter_slam/inertial/tuning.h"
+#include "inertial/tuning.h"
 
 namespace pf {
 
