@@ -1,4 +1,4 @@
-"""Words of guide/ and theory/: the glossary of theory/notation.md has one word for one meaning, and names the words that it replaces. How often a
+"""Words of guide/, reference/ and theory/: the glossary of theory/notation.md has one word for one meaning, and names the words that it replaces. How often a
 page has one of those is counted in words.tsv, and may not grow; a page that is not in the table has none. --update writes the table, and only
 where no count grows."""
 
@@ -37,7 +37,7 @@ def prose(text):
 
 def counts():
     found = {}
-    for folder in ("guide", "theory"):
+    for folder in ("guide", "reference", "theory"):
         for page in sorted((DOCS / folder).glob("*.md")):
             text = prose(page.read_text())
             for word, pattern in REPLACED.items():
