@@ -28,6 +28,15 @@ static void refuses(const char* field) {
   good_config();
 }
 
+static void use_samples(void) {
+  config.motion.model = PF_MOTION_INERTIAL;
+  config.capacity.max_imu_samples = 400;
+  config.imu.gyro_density = 2e-4;
+  config.imu.accel_density = 2e-3;
+  config.imu.gyro_walk = 2e-5;
+  config.imu.accel_walk = 3e-3;
+}
+
 static void test_check_should_name_what_the_window_cannot_do(void) {
   good_config();
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
@@ -35,8 +44,12 @@ static void test_check_should_name_what_the_window_cannot_do(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
   config.plane.fix_sigma = 0.01;
   refuses("plane.fix_sigma");
-  config.motion.model = PF_MOTION_INERTIAL;
+  config.motion.model = PF_MOTION_CONSTANT_ACCELERATION;
   refuses("motion.model");
+  use_samples();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.imu.sigma_readout_s = 0.01;
+  refuses("imu.sigma_readout_s");
   config.camera.estimate = PF_CAMERA_CONSIDER;
   refuses("camera.estimate");
   config.capacity.max_patches = 4;
@@ -50,6 +63,14 @@ static void test_block_should_take_two_and_a_half_mebibytes_at_most(void) {
   good_config();
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   TEST_ASSERT_TRUE(need.bytes <= 5u << 19);
+}
+
+static void test_block_with_an_inertial_unit_should_take_two_and_three_quarter_mebibytes_at_most(void) {
+  pf_memory_t need;
+  good_config();
+  use_samples();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+  TEST_ASSERT_TRUE(need.bytes <= 11u << 18);
 }
 
 static void test_an_estimated_lens_should_be_taken_with_its_prior(void) {
@@ -138,6 +159,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_check_should_name_what_the_window_cannot_do);
   RUN_TEST(test_block_should_take_two_and_a_half_mebibytes_at_most);
+  RUN_TEST(test_block_with_an_inertial_unit_should_take_two_and_three_quarter_mebibytes_at_most);
   RUN_TEST(test_an_estimated_lens_should_be_taken_with_its_prior);
   RUN_TEST(test_calls_of_the_filter_should_be_refused_and_change_nothing);
   RUN_TEST(test_second_pose_should_be_refused_where_it_says_nothing);

@@ -258,7 +258,7 @@ typedef struct pf_imu_model {
    * push those of up to three sigma behind its time before it, as far as they have come. */
   double sigma_delay_s;
   /* Of camera.readout_s, which may be 0 then; up to 0.1. One more row of the lens, which is
-   * considered with PF_CAMERA_CONSIDER, and else estimated. It never falls below 0. */
+   * considered with PF_CAMERA_CONSIDER, and else estimated. It never falls below 0. Filter only. */
   double sigma_readout_s;
   /* Of the scales of both sensors and of the directions of their axes, relative, up to 0.05: what
    * data sheets call sensitivity and cross-axis errors, 0.01 for a phone. 15 rows of the state */
@@ -1063,8 +1063,9 @@ typedef struct pf_inertial {
   double gravity_axes_W[2][3]; /* unit, across gravity and each other */
   /* 1: lengths are metres, by the samples; 0: gravity is not known yet, and only the gyroscope is
    * used. It becomes 1 when the camera has been at rest for a second (a map of unknown scale that
-   * began less than 15 s ago begins anew then), or when such a map has seen enough motion (it goes
-   * on in metres, under another map_id). */
+   * began less than 15 s ago begins anew then; in the window only where the scale is known), or
+   * when a map of unknown scale has seen enough motion (it goes on in metres, under another
+   * map_id). In the window it becomes 0 again where the unit is rejected soon after that. */
   uint32_t metric;
   uint32_t from_motion; /* 1: it became 1 by motion, 0: at rest, or not yet */
   uint32_t map_id;      /* as in pf_pose_t */

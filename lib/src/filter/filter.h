@@ -56,13 +56,12 @@ class Filter {
     for (int r = 0; r < kRows; ++r) C(r, r) = std::max(C(r, r), blocks_.rounding_of(J, r));
     return C;
   }
-  Scalar variance_of(const Rows& row) const;  ///< of a single row
-  /// Of the first rows of the body (rows x rows, row-major).
-  void body_covariance(int rows, Scalar* out) const;
+  Scalar variance_of(const Rows& row) const;          ///< of a single row
+  void body_covariance(int rows, Scalar* out) const;  ///< of its first rows (rows x rows, row-major)
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
   void set_mean(const Body& body) { state_.body = body; }
 
-  /// Set the calibration and, where the layout has a lens, its prior; the mounting of the inertial unit. Before any block is added.
+  /// Set the calibration and, where the layout has a lens, its prior; the unit's mounting. Before any block is added.
   void set_lens(const Camera& camera, const LensPrior& prior);
   void set_mounting(const Mounting& mounting) { state_.mounting = mounting; }
   /// From now on the samples of the inertial unit measure the scale. With `start`, the map has been one up to scale and is scaled first.
@@ -153,8 +152,7 @@ class Filter {
   void forget_through(int plane, const Vec3& sigma);
   /// Multiplies the covariance of a wrong known plane's prior by (1 + widening). False where the prior is tighter than the plane.
   bool forget_prior(int plane, const Mat3& prior, Scalar widening);
-  /// The same of what is along a few rows: P += Uᵀ Q U, Q symmetric.
-  void add_noise(const Rows& U, const Scalar* Q) { blocks_.add_noise(U, Q); }
+  void add_noise(const Rows& U, const Scalar* Q) { blocks_.add_noise(U, Q); }  ///< P += Uᵀ Q U, Q symmetric
   /// Undoes what an update by this row contributed: its variance grows by `variance`, and that of all else by its share.
   void forget_row(const Rows& row, Scalar variance) { blocks_.inflate_along(row, variance); }
   /// Moves the plane, and the points that depend on it directly, to another frame. False, with nothing changed, when the frame is too

@@ -82,10 +82,10 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
                                 : "part of the image stands still while the rest moves, and is masked from now on");
   }
   measure();
-  if (unit_.take_pose(map_of_unit())) {
+  if (unit_.take_pose(placement_.map_of_unit(data_.median_depth), false)) {
     frame_.begin_again();
     measure();
-    unit_.take_pose_again(map_of_unit());
+    unit_.take_pose(placement_.map_of_unit(data_.median_depth), true);
   }
   data_.is_map_fixed = search_.note_fixed();
   learn();
@@ -164,7 +164,8 @@ void KeyframeSlam::learn() {
     placement_.tend_walls(&data_.median_depth);
   }
   MovingSolution solution;
-  if (unit_.look_for_scale(map_of_unit(), &solution)) placement_.scale_by_unit(solution, &data_.median_depth);
+  if (unit_.look_for_scale(placement_.map_of_unit(data_.median_depth), &solution))
+    placement_.scale_by_unit(solution, &data_.median_depth);
   // A keyframe has work enough.
   if (!tracked || is_keyframe || record_.progress().pending()) return;
   relocaliser_.note_view(data_.median_depth);
@@ -172,20 +173,10 @@ void KeyframeSlam::learn() {
   if (join.map_id != 0) placement_.join(join, &data_.median_depth);
 }
 
-MapOfUnit KeyframeSlam::map_of_unit() const {
-  MapOfUnit map;
-  map.is_tracked = tracking_.is_tracked(frame_.report);
-  map.is_pending = record_.progress().recording;
-  map.knows_scale = placement_.knows_scale();
-  map.map_id = tracking_.map_id();
-  map.median_depth = data_.median_depth;
-  map.correlation = noise_.correlation_frames();
-  return map;
-}
-
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
-  if (unit_.leaves_metres(map_of_unit(), data_.follows, data_.since_last_ns)) placement_.leave_metres();
+  if (unit_.leaves_metres(placement_.map_of_unit(data_.median_depth), data_.follows, data_.since_last_ns))
+    placement_.leave_metres();
   if (tracking_.has_pose() && !motion_.is_sound()) {
     const std::uint32_t map_id = tracking_.map_id();
     discard_map();

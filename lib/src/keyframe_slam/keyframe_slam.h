@@ -27,10 +27,12 @@ class Archive;
 class KeyframeSlam {
  public:
   KeyframeSlam(const Settings& settings, Map& map, const ImuLog& imu)
-      : settings_(settings),
-        map_{settings, map, frame_},
-        anchors_{map.anchors, map_, planes_},
-        unit_{settings, map_, frame_, imu, motion_} {}
+      : settings_(settings), map_{settings, map, frame_}, anchors_{map.anchors, map_, planes_}, unit_{settings,
+                                                                                                      map_,
+                                                                                                      frame_,
+                                                                                                      noise_,
+                                                                                                      imu,
+                                                                                                      motion_} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
@@ -56,7 +58,6 @@ class KeyframeSlam {
   std::int64_t body_ns() const { return data_.body_ns; }
   /// Keeps the map: its adjustment has the map's covariance, and it saves the map.
   const KeyframeMapping& mapping() const { return mapping_; }
-  const KeyframeUnit& unit() const { return unit_; }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
@@ -81,7 +82,6 @@ class KeyframeSlam {
   void measure();
   void learn();
   void discard_map();
-  MapOfUnit map_of_unit() const;
 
   const Settings& settings_;
   Frame frame_;

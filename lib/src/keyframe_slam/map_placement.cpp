@@ -80,10 +80,16 @@ void MapPlacement::scale_by_second_pose(Scalar* median_depth) {
                       ", to the distance of the second pose");
 }
 
-bool MapPlacement::knows_scale() const {
+MapOfUnit MapPlacement::map_of_unit(Scalar median_depth) const {
   const PlaneTable& planes = map_.tables().planes;
-  return start_.is_at_target() || start_.is_in_loaded_map() || second_.given ||
-         (planes.has_known() && !planes.has_apart());
+  MapOfUnit map;
+  map.is_tracked = tracking_.is_tracked(frame_.report);
+  map.is_pending = record_.progress().recording;
+  map.knows_scale = start_.is_at_target() || start_.is_in_loaded_map() || second_.given ||
+                    (planes.has_known() && !planes.has_apart());
+  map.map_id = tracking_.map_id();
+  map.median_depth = median_depth;
+  return map;
 }
 
 /// Where poses were given out in the old unit.

@@ -6,8 +6,8 @@
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/walls/keyframe_walls.h"
 
-/// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, walls, or an
-/// inertial unit.
+/// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, walls, or
+/// an inertial unit.
 
 namespace pf {
 
@@ -66,8 +66,8 @@ class MapPlacement {
   void leave_metres();
   /// After the adjustment of a keyframe: the map goes where the samples say that it is.
   void follow_unit(Scalar* median_depth) { move(unit_.follow_adjustment(mapping_.adjustment()), median_depth); }
-  /// Whether something beside samples gives the unit of length.
-  bool knows_scale() const;
+  /// What the inertial unit has to know of the map.
+  MapOfUnit map_of_unit(Scalar median_depth) const;
   /// The map is joined to an earlier one: it goes on in that one's W and unit, under its id.
   void join(const MapJoin& join, Scalar* median_depth);
   /// The map has begun again with other poses, of which the newest keyframe has this frame's: anchors stay where they are before it.
@@ -83,6 +83,7 @@ class MapPlacement {
   /// What a pose of the map at p_W may be off in W, (theta, p), beside what it may be off in the map.
   Mat6 map_covariance(const Vec3& p_W) const;
   const KeyframeWalls& walls() const { return walls_; }
+  const KeyframeUnit& unit() const { return unit_; }
   const KeyframePlanes& planes() const { return planes_; }
 
   void carry(Archive& archive);  ///< base/archive.h

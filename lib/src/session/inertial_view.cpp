@@ -98,7 +98,7 @@ void describe(const Settings& settings, const Filter& filter, const Unit& unit, 
 UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam) { return doubt_of(settings, slam.unit()); }
 
 UnitDoubt read_unit_doubt(const Settings& settings, const KeyframeSlam& slam) {
-  return doubt_of(settings, slam.unit());
+  return doubt_of(settings, slam.placement().unit());
 }
 
 bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out) {
@@ -109,7 +109,7 @@ bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialVie
 }
 
 bool read_inertial(const Settings& settings, const KeyframeSlam& slam, InertialView* out) {
-  const KeyframeUnit& unit = slam.unit();
+  const KeyframeUnit& unit = slam.placement().unit();
   if (!settings.inertial || !unit.has_begun()) return false;
   describe(settings, unit.filter(), unit, unit.is_from_motion(), out);
   return true;

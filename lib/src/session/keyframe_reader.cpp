@@ -15,7 +15,7 @@ int KeyframeReader::kept_views() const { return slam_.kept_views(); }
 void KeyframeReader::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   // Of a frame that repeats the one before, the pose is that one's.
   const std::int64_t now_ns = t_ns > slam_.frame().report.t_ns ? slam_.body_ns() : t_ns;
-  if (!slam_.unit().predict_pose(now_ns, t_ns, body, covariance))
+  if (!slam_.placement().unit().predict_pose(now_ns, t_ns, body, covariance))
     slam_.motion().predict_pose(now_ns, t_ns, body, covariance);
   *covariance += slam_.placement().map_covariance(body->p_W);
 }

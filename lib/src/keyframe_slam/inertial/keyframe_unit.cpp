@@ -127,10 +127,10 @@ void KeyframeUnit::put_prediction() {
 
 /// Corrects the filter by the pose that the frame has measured. False, with nothing changed, where its NIS is above the bound, if there is
 /// one.
-bool KeyframeUnit::update(Scalar max_nis, Scalar correlation) {
+bool KeyframeUnit::update(Scalar max_nis) {
   const KeyframeMotion::MeasuredPose& measured = motion_.measured();
   MapRuler::PoseMeasurement z;
-  parts_->ruler.set_measurement(measured.q_WC, measured.p_W, correlation * measured.R, &z);
+  parts_->ruler.set_measurement(measured.q_WC, measured.p_W, noise_.correlation_frames() * measured.R, &z);
   Filter& filter = parts_->filter;
   const Measurement view = z.view();
   Scalar nis = 0;
@@ -151,15 +151,22 @@ bool KeyframeUnit::update(Scalar max_nis, Scalar correlation) {
   return true;
 }
 
-bool KeyframeUnit::take_pose(const MapOfUnit& map) {
+bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
   if (parts_ == nullptr) return false;
   if (!data_.has_begun) {
     if (map.is_tracked && !map.is_pending) begin(map);
     return false;
   }
   const bool has_pose = map.is_tracked && motion_.measured().is_set;
+  if (again) {
+    if (has_pose) update(0);
+    parts_->watch.settle(map.is_tracked);
+    if (!map.is_tracked) put_prediction();
+    data_.left = motion_.view();
+    return false;
+  }
   const Scalar max_nis = parts_->watch.begin_measuring(frame_.report.frames > 1);
-  const bool fits = !has_pose || update(max_nis, map.correlation);
+  const bool fits = !has_pose || update(max_nis);
   if (!parts_->watch.is_refused(!fits)) {
     data_.left = motion_.view();
     return false;
@@ -174,22 +181,10 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map) {
     put_prediction();
     return true;
   }
-  update(0, map.correlation);
+  update(0);
   parts_->watch.settle(true);
   data_.left = motion_.view();
   return false;
-}
-
-void KeyframeUnit::take_pose_again(const MapOfUnit& map) {
-  if (map.is_tracked && motion_.measured().is_set) update(0, map.correlation);
-  parts_->watch.settle(map.is_tracked);
-  if (!map.is_tracked) put_prediction();
-  data_.left = motion_.view();
-}
-
-bool KeyframeUnit::reads_force() const {
-  Scalar value;
-  return parts_->forces.reason(&value) == UnitReason::kNone;
 }
 
 MovingPoints KeyframeUnit::moving_points() const {
@@ -216,9 +211,11 @@ bool KeyframeUnit::look_for_scale(const MapOfUnit& map, MovingSolution* solution
   const bool has_axes = !open || !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
   parts_->forces.note(filter.state().body.q_WC.toRotationMatrix() * filter.state().mounting.R_CB,
                       has_axes && map.is_tracked);
+  Scalar value;
+  const bool reads_force = parts_->forces.reason(&value) == UnitReason::kNone;
   RestReading rest;
   if (filter.uses_samples() && parts_->rest.note(map.is_tracked, &rest) && !filter.is_metric() && map.knows_scale &&
-      reads_force()) {
+      reads_force) {
     Transition transition;
     const Mounting known = parts_->mounting.now();
     begin_at_rest(filter.state().body, settings_.body, known, rest, &transition);
@@ -230,12 +227,12 @@ bool KeyframeUnit::look_for_scale(const MapOfUnit& map, MovingSolution* solution
   if (filter.uses_samples()) parts_->hold.end_frame(frame_.report.t_ns);
   MovingFrame told;
   told.keep =
-      map.is_tracked && !filter.is_metric() && !map.knows_scale && (filter.uses_samples() || open) && reads_force();
+      map.is_tracked && !filter.is_metric() && !map.knows_scale && (filter.uses_samples() || open) && reads_force;
   told.judge = !map.is_pending && filter.uses_samples();
   told.patient = seconds(elapsed_ns(data_.begin_ns, frame_.report.t_ns)) < kPatience;
   told.map_id = map.map_id;
   told.depth = map.median_depth;
-  told.correlation = map.correlation;
+  told.correlation = noise_.correlation_frames();
   if (!parts_->moving.note(told, moving_points(), solution)) return false;
   filter.set_metric(*solution, parts_->mounting.now());
   data_.is_from_motion = true;

@@ -14,8 +14,8 @@
 #include "keyframe_slam/map/keyframe_map.h"
 #include "keyframe_slam/tracking/motion.h"
 
-/// The inertial unit of the window: a filter over the body, its unit and one length of the map (MapRuler), which predicts the body by samples
-/// and is corrected by the pose that each image has measured (lib/docs/theory/window.md, "An inertial unit").
+/// The inertial unit of the window: a filter over the body, its unit and one length of the map (MapRuler), which predicts the body by
+/// samples and is corrected by the pose that each image has measured (lib/docs/theory/window.md, "An inertial unit").
 
 namespace pf {
 
@@ -28,14 +28,13 @@ struct MapOfUnit {
   bool knows_scale = false;  ///< something else gives its unit of length
   std::uint32_t map_id = 0;
   Scalar median_depth = 1;
-  Scalar correlation = 1;  ///< frames for which errors of pixels stay the same
 };
 
 class KeyframeUnit {
  public:
-  KeyframeUnit(const Settings& settings, const KeyframeMap& map, Frame& frame, const ImuLog& imu,
-               KeyframeMotion& motion)
-      : settings_(settings), map_(map), frame_(frame), imu_(imu), motion_(motion) {}
+  KeyframeUnit(const Settings& settings, const KeyframeMap& map, Frame& frame, const NoiseModel& noise,
+               const ImuLog& imu, KeyframeMotion& motion)
+      : settings_(settings), map_(map), frame_(frame), noise_(noise), imu_(imu), motion_(motion) {}
 
   void layout(Arena& arena);
   void init();
@@ -45,10 +44,8 @@ class KeyframeUnit {
   /// True where samples, or their filter, have predicted the body to this frame. follows: the frame before was tracked.
   bool predict(std::int64_t before_ns, bool follows, bool coasting_or_lost, bool nothing_measured, Scalar median_depth);
   /// Takes the pose that the frame has measured. True where the frame is to be measured again from a prediction without samples, which the
-  /// body has then: hardly anything was found about the one by samples.
-  bool take_pose(const MapOfUnit& map);
-  /// After that second attempt.
-  void take_pose_again(const MapOfUnit& map);
+  /// body has then: hardly anything was found about the one by samples. again: after that.
+  bool take_pose(const MapOfUnit& map, bool again);
   /// After a frame. True the first time that samples give metres: by motion, with *solution, or, in a map whose unit is known, by a rest
   /// (is_from_motion()).
   bool look_for_scale(const MapOfUnit& map, MovingSolution* solution);
@@ -110,13 +107,13 @@ class KeyframeUnit {
   bool begin(const MapOfUnit& map);
   void advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured);
   void put_prediction();
-  bool update(Scalar max_nis, Scalar correlation);
-  bool reads_force() const;
+  bool update(Scalar max_nis);
   MovingPoints moving_points() const;
 
   const Settings& settings_;
   const KeyframeMap& map_;
   Frame& frame_;
+  const NoiseModel& noise_;
   const ImuLog& imu_;
   KeyframeMotion& motion_;
   Data data_;

@@ -24,8 +24,8 @@ class MapRuler {
 
   explicit MapRuler(Filter& filter) : filter_(filter) {}
 
-  /// The filter has begun with the body at a place of the map, in the map's coordinates: these are the filter's. length: of the map, known to
-  /// a share. False where there is no room.
+  /// The filter has begun with the body at a place of the map, in the map's coordinates: these are the filter's. length: of the map, known
+  /// to a share. False where there is no room.
   bool begin(const Vec3& at, Scalar length, Scalar share);
 
   /// s.
@@ -39,8 +39,8 @@ class MapRuler {
   /// Sets what the map has measured of the body's pose.
   void set_measurement(const Quat& q_WC, const Vec3& z, const Mat6& R, PoseMeasurement* out) const;
 
-  /// The map is moved as a whole, and the filter's W with it but for its lengths. keeps_lengths: those of the filter are the right ones; else
-  /// they are the map's.
+  /// The map is moved as a whole, and the filter's W with it but for its lengths. keeps_lengths: those of the filter are the right ones;
+  /// else they are the map's.
   void move(const Similarity& T, bool keeps_lengths);
   /// The map about the body is moved to where it has this pose, in W as it was.
   void move_about(const CameraView& before, const CameraView& now);
