@@ -1,6 +1,7 @@
 """Pages and code find each other: links lead somewhere, pages that comments name exist, and every page of theory/ links to a file that names
 the page. A guide begins with a command and ends with what can go wrong, a page of results/ has a command beside its numbers, each of its tables is remade by
-a tool or has a date, each page is reached from README.md in three clicks, and the sizes on a page are the golden ones."""
+a tool or has a date, each page is reached from README.md in three clicks, names of the code on a page are in the code, and the sizes on a page are the
+golden ones."""
 
 import pathlib
 import re
@@ -19,6 +20,8 @@ KINDS = {"adr", "guide", "lab", "reference", "results", "theory"}  # reference/:
 NOT_MEASURED = {"README.md", "decisions.md", "devices.md", "missed.md"}
 OLD = r"\*Old numbers, \d{4}-\d\d-\d\d( to \d{4}-\d\d-\d\d)?\.\*\n"  # above a table that tools/remake-results does not make
 LAST = "\n## What can go wrong\n"  # section of a guide
+NAMES = r"`((?:pf_|PF_)\w+|[A-Z]\w+::\w+)`"  # of the code
+PLACEHOLDERS = {"pf_verb_object", "pf_x_t", "PF_X_Y"}  # of theory/notation.md
 COMMAND = r"`(pf-|tools/|python3 |PLANEFOLD_|tests/)[^`]+`|^```(sh|console)$|`--[a-z]"
 CLICKS = 3
 problems = []
@@ -51,6 +54,12 @@ for path, text in code.items():
     for named in re.findall(r"\blib/docs/([\w/]+\.md)", text):
         if not (DOCS / named).is_file():
             problems.append(f"{source.name(path)} names lib/docs/{named}, which does not exist")
+
+words = set(re.findall(r"\w+", "\n".join(code.values())))
+for page in [README, *sorted(path for kind in ("guide", "reference", "theory") for path in (DOCS / kind).glob("*.md"))]:
+    if page.name != "names.md":  # names of before
+        unknown = {name for name in re.findall(NAMES, page.read_text()) if not set(name.split("::")) <= words} - PLACEHOLDERS
+        problems += [f"{source.name(page)} names {name}, which is nowhere in the code" for name in sorted(unknown)]
 
 reached = {README}
 for _ in range(CLICKS):

@@ -1,6 +1,6 @@
-"""Words of guide/ and theory/: the glossary of theory/notation.md has one word for one meaning, and names the words that it replaces. How often a
+"""Words of guide/, reference/ and theory/: the glossary of theory/notation.md has one word for one meaning, and names the words that it replaces. How often a
 page has one of those is counted in words.tsv, and may not grow; a page that is not in the table has none. --update writes the table, and only
-where no count grows."""
+where no count grows. Both kinds that are read from beginning to end, guide/ and theory/, have at most MAX_WORDS words together."""
 
 import pathlib
 import re
@@ -10,6 +10,7 @@ import source
 
 DOCS = source.ROOT / "lib/docs"
 TABLE = pathlib.Path(__file__).with_name("words.tsv")
+MAX_WORDS = 30000
 # What is counted, by the word under which the glossary's last column has it.
 REPLACED = {
     "tell": r"tells?|told|telling",
@@ -37,7 +38,7 @@ def prose(text):
 
 def counts():
     found = {}
-    for folder in ("guide", "theory"):
+    for folder in ("guide", "reference", "theory"):
         for page in sorted((DOCS / folder).glob("*.md")):
             text = prose(page.read_text())
             for word, pattern in REPLACED.items():
@@ -58,6 +59,9 @@ last_column = " ".join(line.rsplit("|", 2)[1] for line in glossary[glossary.inde
 for word in REPLACED:
     if not re.search(rf"\b{word}\b", last_column):
         problems.append(f"theory/notation.md: the glossary does not have '{word}' in its last column")
+number = sum(len(page.read_text().split()) for folder in ("guide", "theory") for page in (DOCS / folder).glob("*.md"))
+if number > MAX_WORDS:
+    problems.append(f"guide/ and theory/ have {number} words, {MAX_WORDS} at most: tables to look up belong in reference/, numbers in results/, what was tried in lab/")
 found, allowed = counts(), table()
 for (page, word), number in found.items():
     if number > allowed.get((page, word), 0):

@@ -5,7 +5,7 @@
 
 #include "algebra.h"
 
-/// The filter of the paper's experiment: lib/docs/theory/gee2007.md.
+/// The filter of the paper's experiment: lib/docs/results/gee2007.md.
 
 namespace pfsim::gee {
 
