@@ -1,5 +1,5 @@
 // Pixels that the caller gives in place of an image: by the features that they measure, and which of them measure none.
-#include "frame/given_pixels.h"
+#include "map/given_pixels.h"
 #include "support/textured_images.h"
 #include "unity.h"
 

@@ -7,8 +7,8 @@
 #include "filter_slam/features/feature_keeper.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
-#include "frame/given_pixels.h"
 #include "frame/settings.h"
+#include "map/given_pixels.h"
 #include "map/map.h"
 
 /// Measures a frame of pixels that the caller has matched: gates them, updates the filter, and adds features for unknown ids.

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "frame/given_pixels.h"
 #include "frame/image_search.h"
 #include "keyframe_slam/map/keyframe_map.h"
+#include "map/given_pixels.h"
 
 namespace pf {
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "frame/followed_view.h"
-#include "frame/given_pixels.h"
 #include "frame/image_search.h"
 #include "frame/noise_model.h"
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/tracking/expected_pixel.h"
+#include "map/given_pixels.h"
 
 /// Lists the points of the map that should be in view, and searches for them in the image, or takes the pixels that the caller has found.
 

@@ -1,4 +1,4 @@
-#include "frame/given_pixels.h"
+#include "map/given_pixels.h"
 
 #include "base/table_entries.h"
 
