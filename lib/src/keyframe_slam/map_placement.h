@@ -65,7 +65,9 @@ class MapPlacement {
   /// It does no more: the map goes on under another id.
   void leave_metres(const char* why);
   /// After the adjustment of a keyframe: the map goes where the samples say that it is.
-  void follow_unit(Scalar* median_depth) { move(unit_.follow_adjustment(mapping_.adjustment()), median_depth); }
+  void follow_unit(Scalar* median_depth) {
+    if (unit_.is_metric()) move(unit_.follow_adjustment(mapping_.adjustment()), median_depth);
+  }
   /// What the inertial unit has to know of the map.
   MapOfUnit map_of_unit(Scalar median_depth) const;
   /// The map is joined to an earlier one: it goes on in that one's W and unit, under its id.

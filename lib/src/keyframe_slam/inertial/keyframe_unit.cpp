@@ -7,6 +7,7 @@
 #include "frame/start/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "inertial/tuning.h"
+#include "model/camera_at.h"
 
 namespace pf {
 namespace {
@@ -95,6 +96,7 @@ bool KeyframeUnit::predict(std::int64_t before_ns, bool follows, bool coasting_o
                            Scalar median_depth) {
   if (!has_begun()) return false;
   const std::int64_t t_ns = frame_.report.t_ns;
+  data_.follows = follows;
   parts_->ruler.move_about(data_.left, motion_.view());
   parts_->watch.begin_frame(before_ns, t_ns);
   if (parts_->watch.take_alignment()) {
@@ -165,8 +167,13 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
     data_.left = motion_.view();
     return false;
   }
-  const Scalar max_nis = parts_->watch.begin_measuring(frame_.report.frames > 1);
-  const bool fits = !has_pose || update(max_nis);
+  const Scalar of_samples = parts_->watch.begin_measuring(data_.follows);
+  bool fits = !has_pose || update(data_.follows ? of_samples : tuning::unit_watch::kMaxPoseNis);
+  if (!fits && !data_.follows) {  // found again somewhere else: the map is, and how the body moves says nothing of it
+    const Body predicted = parts_->ruler.body();
+    parts_->ruler.move_about({predicted.q_WC, predicted.p_W}, motion_.view());
+    fits = true;
+  }
   if (!parts_->watch.is_refused(!fits)) {
     data_.left = motion_.view();
     return false;
@@ -248,7 +255,14 @@ const char* KeyframeUnit::leaves_metres(const MapOfUnit& map, bool follows, std:
     begin_map();
     return "they came from an inertial unit that is rejected";
   }
-  if (!is_from_motion() || !(parts_->ruler.scale_variance() > kLateSigmaScale * kLateSigmaScale)) return nullptr;
+  const bool gave_metres = is_from_motion();
+  const BlockFilter::Repair repair = parts_->filter.repair(frame_.report.frames);
+  if (repair == BlockFilter::Repair::kDone) count_frame(&frame_.report.repairs);
+  if (repair == BlockFilter::Repair::kImpossible || !parts_->filter.body_is_sound()) {
+    begin_map();
+    return gave_metres ? "the estimate of the inertial unit is not finite, or its covariance is invalid" : nullptr;
+  }
+  if (!gave_metres || !(parts_->ruler.scale_variance() > kLateSigmaScale * kLateSigmaScale)) return nullptr;
   begin_map();
   return "the map has lost what held its size";
 }
@@ -287,6 +301,7 @@ bool KeyframeUnit::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* bo
   if (!has_begun() || t_ns <= now_ns || !parts_->filter.uses_samples()) return false;
   parts_->motion.predict_pose(parts_->hold.motion_begin_ns(now_ns), t_ns, body, covariance);
   const Similarity T = parts_->ruler.to_filter();
+  if (parts_->filter.is_metric()) body->v_W = camera_velocity(*body, parts_->filter.state().mounting);
   body->p_W = (body->p_W - T.t) / T.s;
   body->v_W /= T.s;
   Similarity back;

@@ -99,6 +99,7 @@ class KeyframeUnit {
   struct Data {
     bool has_begun = false;
     bool is_from_motion = false;
+    bool follows = false;  ///< the frame before was tracked, and so was the pose that this one's prediction begins at
     std::int64_t begin_ns = 0;  ///< of the filter
     CameraView left;            ///< where the body was at the end of the last frame
     int newest = 0;             ///< number of the last keyframe whose adjustment was followed

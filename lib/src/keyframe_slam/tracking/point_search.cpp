@@ -113,6 +113,7 @@ bool PointSearch::find(int c, const PosePrior& at, Scalar depth) {
     ++frame_.report.attempts;
     match.measured = pixel.pixel;
     point_[c].noise = Mat2::Identity() * (pixel.sigma_px * pixel.sigma_px);
+    point_[c].searched = ellipse_area(match.innovation, settings_.gate);
     return true;
   }
   SearchTask task = task_of(match.feature, at, depth);
@@ -129,6 +130,7 @@ bool PointSearch::find(int c, const PosePrior& at, Scalar depth) {
     return false;
   match.measured = outcome.pixel;
   point_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
+  point_[c].searched = ellipse_area(task.innovation, settings_.gate);
   return true;
 }
 
@@ -140,7 +142,7 @@ int PointSearch::search(int found, int first, int count, const PosePrior& at, Sc
     Match& match = frame_.match(point_[c].match);
     ++frame_.report.matches;
     match.status = MatchStatus::kOutlier;  // until the consensus has it as an inlier
-    point_[c].searched = std::min(image, ellipse_area(match.innovation, settings_.gate));
+    point_[c].searched = std::min(image, point_[c].searched);
     std::swap(point_[found++], point_[c]);
   }
   return found;
