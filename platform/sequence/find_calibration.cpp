@@ -71,6 +71,18 @@ fs::path first_there(const fs::path& where, const std::vector<std::string>& name
   return {};
 }
 
+/// calib_cam_to_cam.txt of KITTI's raw recordings, which lies above the folders of the drives; empty: none.
+fs::path calibration_of_drives(const fs::path& camera) {
+  const fs::path drive = (fs::absolute(camera) / ".").lexically_normal().parent_path().parent_path();
+  for (const fs::path& above : {drive, drive.parent_path()}) {
+    const fs::path file = above / "calib_cam_to_cam.txt";
+    if (is_file(file)) {
+      return file;
+    }
+  }
+  return {};
+}
+
 void refuse_missing(const fs::path& where, const std::vector<std::string>& names, const char* others) {
   std::string list;
   for (const std::string& name : names) {
@@ -110,6 +122,11 @@ fs::path find_calibration(const fs::path& where, const fs::path& images, const s
     const fs::path named = first_there(where, names, names.size());
     if (!named.empty()) {
       return named;
+    }
+    const fs::path above = calibration_of_drives(where);
+    if (!above.empty()) {
+      notes.push_back(above.string() + ": is taken for the images of " + images.string());
+      return above;
     }
     refuse_missing(where, names, " or another file of a known layout");
   }
