@@ -70,6 +70,10 @@ bool is_of_light(const std::string& name) {
 
 }  // namespace
 
+bool has_several_cameras(const fs::path& root) {
+  return std::max(folders_with_images(root).size(), folders_with_images(root, "data").size()) > 1;
+}
+
 fs::path find_images(const fs::path& root, bool has_times, std::vector<std::string>& notes) {
   for (const char* below : {"images", "image_0"}) {
     if (is_folder(root / below)) {

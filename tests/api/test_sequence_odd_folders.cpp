@@ -95,6 +95,7 @@ static void test_two_streams_should_be_refused_with_what_to_type() {
   write_frames(below, "left/%d.png", 6);
   write_frames(below, "right/%d.png", 6);
   require_refused("images:" + below.path(), "several folders (left/, right/)", "--source images:" + (below / "left"));
+  require_frames("images:" + (below / "left"), 6, (below / "calib.yaml: is taken").c_str());
 }
 
 static void test_previews_and_single_files_should_be_left_out_by_name() {
