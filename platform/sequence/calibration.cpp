@@ -112,15 +112,30 @@ std::string known_forms() {
 
 std::vector<Fields> documents_of(const std::string& text, const std::string& file) {
   try {
-    return Fields::documents(from_eth3d(from_colmap(text)), file);
+    return Fields::documents(from_mono_vo(from_eth3d(from_colmap(text))), file);
   } catch (const NoFields& error) {
     refuse(error.what() + std::string(" Known are ") + known_forms());
+  }
+}
+
+/// Refuses settings of a program that name the file of the calibration: VINS-Fusion's cam0_calib, OpenVINS' relative_config_imucam.
+void refuse_settings(const Fields& fields) {
+  for (const std::string& key : fields.keys()) {
+    const std::string name = fields.is_scalar(key) ? fields.text(key) : "";
+    const fs::path beside = fs::path(fields.file()).parent_path() / name;
+    const std::string extension = fs::path(name).extension().string();
+    if ((extension == ".yaml" || extension == ".yml") &&
+        (key.find("calib") != key.npos || key.find("cam") != key.npos)) {
+      refuse(fields.file() + ": holds the settings of a program, and names its calibration in '" + key + "'; " +
+             (is_file(beside) ? "give that: " + beside.string() : "give that: " + name + ", which is not beside it"));
+    }
   }
 }
 
 Calibration read_fields(const Fields& fields, const Asked& asked) {
   const Form* form = form_of(fields);
   if (form == nullptr) {
+    refuse_settings(fields);
     refuse(fields.file() + ": is a calibration of no known layout; known are " + known_forms());
   }
   Calibration calibration{};

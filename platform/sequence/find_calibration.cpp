@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "image_folder.h"
 #include "meaning.h"
 #include "refuse.h"
 
@@ -71,6 +72,19 @@ fs::path first_there(const fs::path& where, const std::vector<std::string>& name
   return {};
 }
 
+/// The calibration of a folder of one camera of several, which lies above it; KITTI's raw recordings have calib_cam_to_cam.txt above the
+/// folders of their drives. Empty: none.
+fs::path calibration_above(const fs::path& camera, const std::vector<std::string>& names) {
+  const fs::path above = (fs::absolute(camera) / ".").lexically_normal().parent_path().parent_path();
+  for (const fs::path& file : {above / "calib_cam_to_cam.txt", above.parent_path() / "calib_cam_to_cam.txt"}) {
+    if (is_file(file)) {
+      return file;
+    }
+  }
+  const fs::path named = first_there(above, names, names.size());
+  return !named.empty() && has_several_cameras(above) ? named : fs::path();
+}
+
 void refuse_missing(const fs::path& where, const std::vector<std::string>& names, const char* others) {
   std::string list;
   for (const std::string& name : names) {
@@ -110,6 +124,11 @@ fs::path find_calibration(const fs::path& where, const fs::path& images, const s
     const fs::path named = first_there(where, names, names.size());
     if (!named.empty()) {
       return named;
+    }
+    const fs::path above = calibration_above(where, names);
+    if (!above.empty()) {
+      notes.push_back(above.string() + ": is taken for the images of " + images.string());
+      return above;
     }
     refuse_missing(where, names, " or another file of a known layout");
   }

@@ -71,13 +71,16 @@ void refuse_other_layouts(const fs::path& root, const std::string& kind) {
   }
 }
 
-/// The first file of the folder whose name ends so; empty: none.
+/// The first file of the folder whose name ends so, whatever the case of letters; empty: none.
 fs::path file_that_ends(const fs::path& folder, const std::string& end) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
   fs::path found;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), last; !error && entry != last; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (name.size() > end.size() && name[0] != '.' && name.compare(name.size() - end.size(), end.size(), end) == 0 &&
+    if (name.size() > end.size() && name[0] != '.' && std::equal(end.rbegin(), end.rend(), name.rbegin(), same) &&
         (found.empty() || entry->path() < found)) {
       found = entry->path();
     }
@@ -87,13 +90,14 @@ fs::path file_that_ends(const fs::path& folder, const std::string& end) {
 
 /// What a folder without images may hold in their place, and what to do.
 std::string what_it_holds(const fs::path& folder) {
-  for (const char* end : {".bmp", ".tif", ".tiff", ".webp", ".ppm", ".heic", ".exr", ".dng", ".jp2", ".gif"}) {
+  for (const char* end :
+       {".bmp", ".tif", ".tiff", ".webp", ".ppm", ".heic", ".heif", ".avif", ".exr", ".dng", ".jp2", ".jxl", ".gif"}) {
     const fs::path other = file_that_ends(folder, end);
     if (!other.empty()) {
       std::string format(end + 1);
       std::transform(format.begin(), format.end(), format.begin(), [](unsigned char c) { return std::toupper(c); });
       return " but " + format + " (" + other.filename().string() +
-             "); convert them (ImageMagick: mogrify -format png *" + end + ")";
+             "); convert them (ImageMagick: mogrify -format png *" + other.extension().string() + ")";
     }
   }
   return "; check the path";

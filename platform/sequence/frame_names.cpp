@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "name_stamps.h"
 #include "numbers.h"
 
 namespace pf::sequence {
@@ -58,23 +59,44 @@ std::vector<std::string_view> numbers_of(const std::vector<std::string>& names) 
   return numbers;
 }
 
-/// Whether whole numbers are times since 1970 in milliseconds or finer: long, and no dates as 20240131120000.
-bool are_stamps(const std::vector<std::string_view>& numbers) {
-  constexpr size_t kDigits = 13, kDateDigits = 14, kNanosecondDigits = 19;
-  return std::all_of(numbers.begin(), numbers.end(), [](std::string_view number) {
-    const bool date = number.size() >= kDateDigits && number.size() < kNanosecondDigits &&
-                      (number.substr(0, 2) == "20" || number.substr(0, 2) == "19");
-    return number.size() >= kDigits && !date;
-  });
+/// Frames in the order of their times, which must differ; else empty.
+std::vector<Frame> in_order(const fs::path& images, const std::vector<std::string>& names,
+                            const std::vector<int64_t>& times) {
+  std::vector<std::pair<int64_t, size_t>> order;
+  for (size_t i = 0; i < times.size(); ++i) {
+    order.emplace_back(times[i], i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Frame> frames;
+  for (const auto& [t_ns, i] : order) {
+    if (!frames.empty() && t_ns <= frames.back().t_ns) {
+      return {};
+    }
+    frames.push_back({t_ns, images / names[i]});
+  }
+  return frames;
 }
 
 }  // namespace
 
 std::vector<Frame> frames_by_names(const fs::path& images, const std::vector<std::string>& names, double rate_hz,
                                    std::vector<std::string>& notes) {
-  const std::vector<std::string_view> numbers = numbers_of(names);
+  if (names.size() < 3) {
+    return {};
+  }
+  const std::vector<Frame> dated = in_order(images, names, dates_in(names));
+  if (!dated.empty()) {
+    notes.push_back(
+        images.string() +
+        ": no times.txt; the dates in the names of the images are their times; a times.txt can say otherwise");
+    return dated;
+  }
+  std::vector<std::string_view> numbers = numbers_of(names);
   const bool fractions = are_fractions(numbers);
-  if (numbers.size() < 3 || (!fractions && !are_stamps(numbers))) {
+  if (!fractions && (numbers.empty() || !are_stamps(numbers))) {
+    numbers = stamps_in(names);
+  }
+  if (numbers.empty() || (!fractions && !are_stamps(numbers))) {
     return {};
   }
   std::vector<std::pair<int64_t, size_t>> order;

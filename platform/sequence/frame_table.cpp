@@ -137,6 +137,7 @@ class Reader {
   [[noreturn]] void refuse_row(size_t i, const std::string& why) const { refuse(table_.where(row(i)) + why); }
 
   void require_equal_rows() const;
+  void refuse_decimal_commas() const;
   bool layout_by_header(Layout& layout) const;
   Layout layout_by_content() const;
   void require_indices(const Layout& layout) const;
@@ -161,6 +162,22 @@ void Reader::require_equal_rows() const {
   }
   if (columns > kMaxColumns) {
     refuse_row(0, "has " + std::to_string(columns) + " columns; a table of frames has a time and an image name");
+  }
+}
+
+/// "0,9990" and "1,0323" alone are two columns, or times with decimal commas: then the first does not count, and the second are as long.
+void Reader::refuse_decimal_commas() const {
+  bool repeats = false;
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    const auto& words = rows_[i];
+    if (words.size() != 2 || words[1].size() < 2 || words[1].size() != rows_[0][1].size() || !is_whole(words[0]) ||
+        !is_whole(words[1]) || row(i).line.find(',') == std::string_view::npos) {
+      return;
+    }
+    repeats = repeats || (i > 0 && words[0] == rows_[i - 1][0]);
+  }
+  if (repeats) {
+    refuse_row(0, "'" + row_text(row(0)) + "' looks like a time with a decimal comma; write decimal points");
   }
 }
 
@@ -349,6 +366,7 @@ std::vector<Frame> Reader::read(std::vector<std::string>& notes) {
     refuse(table_.name() + ": lists no frame");
   }
   require_equal_rows();
+  refuse_decimal_commas();
   Layout layout{{}, place_.unit, false};
   if (!layout_by_header(layout)) {
     layout = layout_by_content();

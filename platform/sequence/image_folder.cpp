@@ -41,8 +41,8 @@ void require_intrinsics_of_grey(const fs::path& root, const std::string& camera)
   }
 }
 
-/// Folders inside that hold images.
-std::vector<std::string> folders_with_images(const fs::path& root) {
+/// Folders inside that hold images, themselves or in a folder of that name.
+std::vector<std::string> folders_with_images(const fs::path& root, const char* below = "") {
   std::vector<std::string> found;
   std::error_code error;
   for (fs::directory_iterator entry(root, error), end; !error && entry != end; entry.increment(error)) {
@@ -51,7 +51,7 @@ std::vector<std::string> folders_with_images(const fs::path& root) {
       continue;  // what other systems put beside the files of users
     }
     std::error_code closed;
-    for (fs::directory_iterator file(entry->path(), closed); !closed && file != end; file.increment(closed)) {
+    for (fs::directory_iterator file(entry->path() / below, closed); !closed && file != end; file.increment(closed)) {
       if (is_image_name(file->path())) {
         found.push_back(name);
         break;
@@ -70,6 +70,10 @@ bool is_of_light(const std::string& name) {
 
 }  // namespace
 
+bool has_several_cameras(const fs::path& root) {
+  return std::max(folders_with_images(root).size(), folders_with_images(root, "data").size()) > 1;
+}
+
 fs::path find_images(const fs::path& root, bool has_times, std::vector<std::string>& notes) {
   for (const char* below : {"images", "image_0"}) {
     if (is_folder(root / below)) {
@@ -87,6 +91,12 @@ fs::path find_images(const fs::path& root, bool has_times, std::vector<std::stri
     }
   }
   const std::vector<std::string> all = folders_with_images(root);
+  const std::vector<std::string> cameras = all.empty() ? folders_with_images(root, "data") : std::vector<std::string>();
+  if (!cameras.empty() && !has_times) {  // as KITTI's raw recordings
+    refuse(root.string() + ": has its images in " + cameras.front() + "/data" +
+           (cameras.size() > 1 ? " to " + cameras.back() + "/data" : "") +
+           "; name a camera, as in --source images:" + (root / cameras.front()).string());
+  }
   std::vector<std::string> chosen;
   std::string names;
   for (const std::string& name : all) {

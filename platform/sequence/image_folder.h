@@ -14,6 +14,9 @@ namespace pf::sequence {
 /// notes      get what was chosen where there was a choice
 fs::path find_images(const fs::path& root, bool has_times, std::vector<std::string>& notes);
 
+/// Whether several folders inside hold images, themselves or in their data/.
+bool has_several_cameras(const fs::path& root);
+
 }  // namespace pf::sequence
 
 #endif

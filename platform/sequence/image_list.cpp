@@ -192,16 +192,20 @@ void keep_light(const fs::path& folder, Kinds& kinds, std::vector<std::string>& 
   if (beside.empty()) {
     return;
   }
-  std::string chosen, all;
-  size_t of_light = 0;
+  std::string chosen, all, largest;
+  size_t of_light = 0, most = 0;
   for (const std::string& kind : beside) {
+    if (kinds[kind].names.size() > most) {
+      most = kinds[kind].names.size();
+      largest = kind;
+    }
     all += (all.empty() ? "" : ", ") + kind;
     of_light += is_of_light(kind) ? 1 : 0;
     chosen = is_of_light(kind) ? kind : chosen;
   }
   if (of_light != 1) {
     refuse(folder.string() + ": images of several kinds lie side by side (" + all + "); name one, as in --source " +
-           source_of(folder, *beside.begin()) + ", keep one kind in a folder, or name the images in times.txt");
+           source_of(folder, largest) + ", keep one kind in a folder, or name the images in times.txt");
   }
   Kind kept = kinds[chosen];
   kinds.clear();

@@ -33,9 +33,32 @@ void put_utf8(std::string& out, uint32_t code) {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The separator of a line: a comma or semicolon outside of quotes, or a blank. Where there are semicolons, commas inside of numbers
-/// are decimal ones.
+/// Whether a line is cut at blanks, with decimal commas: "1,05 00001.png". Each comma stands in a number of digits, one at most in each.
+bool has_decimal_commas(std::string_view line) {
+  bool blank = false, commas = false;
+  for (size_t begin = 0; begin < line.size();) {
+    const size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+    const std::string_view word = line.substr(begin, end - begin);
+    const size_t comma = word.find(',');
+    if (comma != word.npos) {
+      commas = true;
+      if (comma == 0 || comma + 1 == word.size() || word.find_first_not_of("0123456789,+-eE") != word.npos ||
+          word.find(',', comma + 1) != word.npos) {
+        return false;
+      }
+    }
+    blank = blank || (begin > 0 && !word.empty());
+    begin = end + 1;
+  }
+  return commas && blank;
+}
+
+/// The separator of a line: a comma or semicolon outside of quotes, or a blank. Where there are semicolons or blanks, commas inside of
+/// numbers are decimal ones.
 char separator_of(std::string_view line) {
+  if (has_decimal_commas(line)) {
+    return ' ';
+  }
   bool quoted = false, semicolon = false, comma = false, decimal = true;
   for (size_t i = 0; i < line.size(); ++i) {
     quoted = line[i] == '"' ? !quoted : quoted;
@@ -93,7 +116,7 @@ std::vector<std::string_view> split(char* line, size_t size, char separator) {
     while (at < size && !(blanks ? is_blank(line[at]) : line[at] == separator)) ++at;
     if (field.data() == nullptr) {
       field = trimmed({line + begin, at - begin});
-      if (separator == ';') {
+      if (separator != ',') {
         put_decimal_points(line + begin, at - begin);
       }
     }

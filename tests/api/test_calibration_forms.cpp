@@ -201,6 +201,53 @@ static void test_colmap_should_be_read_with_its_centre_moved_by_half_a_pixel() {
   require_refused("1 PINHOLE 640 480 500 nan 320 240\n", "'camera 1'");
 }
 
+static void test_numbers_alone_should_be_read_with_distortion_where_they_have_it() {
+  const auto read = [](const std::string& row) {
+    TemporaryFolder folder;
+    folder.write("rgb.txt", "0 rgb/0.png\n0.05 rgb/1.png\n");
+    for (const char* name : {"rgb/0.png", "rgb/1.png"}) folder.write(name, grey_png(1));
+    folder.write("calibration.txt", row + "\n");
+    const Opened opened("tum:" + folder.path());
+    TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+    return opened.info.camera;
+  };
+  require_lens(read("30 31 15.5 16.5"), PF_CAMERA_PINHOLE, 30, 31, 15.5, 16.5);
+  require_lens(read("30 31 15.5 16.5 0.1 -0.2 0.001 0.002"), PF_CAMERA_RADTAN, 30, 31, 15.5, 16.5,
+               {0.1, -0.2, 0.001, 0.002});
+  require_lens(read("30, 31, 15.5, 16.5, 0.1, -0.2, 0.001, 0.002, 0.03"), PF_CAMERA_RADTAN, 30, 31, 15.5, 16.5,
+               {0.1, -0.2, 0.001, 0.002, 0.03});
+  require_refused("30 31 15.5 16.5 0.1 -0.2\n", "has 6 numbers; known are fx fy cx cy");
+}
+
+static void test_mono_vo_should_be_read_in_its_models_and_shares_of_the_size() {
+  const std::string rest = "\n640 480\ncrop\n640 480\n";
+  require_lens(camera_of("RadTan 500 501 320 240 0.1 -0.2 0.001 0.002" + rest), PF_CAMERA_RADTAN, 500, 501, 320, 240,
+               {0.1, -0.2, 0.001, 0.002});
+  require_lens(camera_of("EquiDistant 310 311 318 241 0.02 -0.01 0.004 -0.001" + rest), PF_CAMERA_EQUIDISTANT, 310, 311,
+               318, 241, {0.02, -0.01, 0.004, -0.001});
+  require_lens(camera_of("Pinhole 0.75 1 0.5 0.5 0" + rest), PF_CAMERA_PINHOLE, 480, 480, 319.5, 239.5);
+  require_lens(camera_of("0.75 1 0.5 0.5 0\n640 480\n0.4 0.53 0.5 0.5 0\n640 480\n"), PF_CAMERA_PINHOLE, 480, 480,
+               319.5, 239.5);
+  require_refused("FOV 0.349 0.436 0.493 0.499 0.933" + rest, "is 'FOV' with 5 numbers; known are Pinhole");
+  require_refused("0.349 0.436 0.493 0.499 0.933" + rest, "is 'FOV'");
+  require_refused("RadTan 500 501 320 240 0.1" + rest, "is 'RadTan' with 5 numbers");
+  require_refused("Pinhole 500 501 320 240 0.9" + rest, "is 'Pinhole'");
+}
+
+static void test_settings_that_name_a_calibration_should_be_refused_with_its_name() {
+  TemporaryFolder folder;
+  folder.write("cam0_pinhole.yaml", kVinsMei);
+  folder.write("config.yaml",
+               "%YAML:1.0\nimu: 1\nnum_of_cam: 2\nimu_topic: \"/imu0\"\ncam0_calib: \"cam0_pinhole.yaml\"\n");
+  pf_camera_t camera{};
+  char message[PF_SEQUENCE_MESSAGE];
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration((folder / "config.yaml").c_str(), &camera, nullptr, message));
+  require_message(message, "'cam0_calib'; give that: " + (folder / "cam0_pinhole.yaml"));
+  TEST_ASSERT_EQUAL_INT(0, pf_read_calibration((folder / "cam0_pinhole.yaml").c_str(), &camera, nullptr, message));
+  require_refused("%YAML:1.0\nuse_fej: true\nrelative_config_imucam: \"kalibr_imucam_chain.yaml\"\n",
+                  "which is not beside it");
+}
+
 static void test_orb_slam_should_not_take_rectified_numbers_for_those_of_the_camera() {
   const std::string stereo =
       "%YAML:1.0\nCamera.fx: 435.2\nCamera.fy: 435.2\nCamera.cx: 367.4\nCamera.cy: 252.2\nCamera.k1: 0.0\nCamera.k2: "
@@ -229,6 +276,9 @@ int main() {
   RUN_TEST(test_ros_should_apply_roi_refuse_binning_and_note_rectification);
   RUN_TEST(test_kitti_raw_should_be_read_as_rectified_with_its_size);
   RUN_TEST(test_colmap_should_be_read_with_its_centre_moved_by_half_a_pixel);
+  RUN_TEST(test_numbers_alone_should_be_read_with_distortion_where_they_have_it);
+  RUN_TEST(test_mono_vo_should_be_read_in_its_models_and_shares_of_the_size);
+  RUN_TEST(test_settings_that_name_a_calibration_should_be_refused_with_its_name);
   RUN_TEST(test_orb_slam_should_not_take_rectified_numbers_for_those_of_the_camera);
   return UNITY_END();
 }

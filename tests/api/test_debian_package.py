@@ -1,5 +1,6 @@
 """cpack makes a Debian package of this build: what it holds, what it depends on, and that a C program builds against it."""
 
+import gzip
 import json
 import os
 import pathlib
@@ -29,10 +30,10 @@ def check_manual(root):
         print("there is no help2man: the package has no man pages")
         return
     for program in sorted((root / "usr/bin").iterdir()):
-        page = root / "usr/share/man/man1" / f"{program.name}.1"
+        page = root / "usr/share/man/man1" / f"{program.name}.1.gz"
         if not page.exists():
             script.fail(f"the package lacks a man page of {program.name}; is the target man built?")
-        text = page.read_text()
+        text = gzip.decompress(page.read_bytes()).decode()
         if ".SH NAME" not in text or "\\-\\-version" not in text:
             script.fail(f"{page.name} does not describe {program.name}:\n{text[:400]}")
 
@@ -78,6 +79,8 @@ with tempfile.TemporaryDirectory() as folder:
                      "usr/lib/pkgconfig/planefold.pc", "usr/lib/cmake/planefold/planefoldConfig.cmake", "usr/bin/pf-capture", "usr/bin/pf-eval", "usr/share/doc/planefold/copyright"):
         if not (root / expected).exists():
             script.fail(f"the package lacks {expected}")
+    if list(root.rglob("__pycache__")):
+        script.fail("the package holds folders of Python's caches")
     script.run(root / "usr/bin/pf-capture", "--help")
     check_manual(root)
     check_pf_eval(root / "usr/bin/pf-eval", folder)

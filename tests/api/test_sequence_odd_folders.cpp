@@ -87,10 +87,15 @@ static void test_two_streams_should_be_refused_with_what_to_type() {
   write_frames(formats, "%d.png", 6);
   write_frames(formats, "%d.jpg", 6);
   require_refused("images:" + formats.path(), "side by side", "--source 'images:");
+  TemporaryFolder copied;  // what is proposed is the sequence, and not the copy of one of its images
+  write_frames(copied, "%d.png", 6);
+  copied.write("3 (copy).png", grey_png(3));
+  require_refused("images:" + copied.path(), "side by side", "--source 'images:" + (copied / "*.png"));
   TemporaryFolder below;
   write_frames(below, "left/%d.png", 6);
   write_frames(below, "right/%d.png", 6);
   require_refused("images:" + below.path(), "several folders (left/, right/)", "--source images:" + (below / "left"));
+  require_frames("images:" + (below / "left"), 6, (below / "calib.yaml: is taken").c_str());
 }
 
 static void test_previews_and_single_files_should_be_left_out_by_name() {
@@ -125,6 +130,35 @@ static void test_colour_images_of_kitti_should_be_taken_where_there_are_no_grey_
   require_frames("images:" + folder.path(), 4, "has no image_0; the colour images of image_2 are taken");
   folder.write("calib.txt", grey + "P2: 33.5 0 15.25 7 0 31 16 0 0 0 1 0\n");
   require_refused("images:" + folder.path(), "P2 of the colour images differs", "--calib");
+}
+
+static void test_kitti_raw_should_be_read_by_camera_with_the_calibration_above() {
+  TemporaryFolder folder;
+  std::string times;
+  for (int i = 0; i < 4; ++i) {
+    times += numbered("2011-09-26 13:02:25.%09d\n", 100000000 * i);
+    for (const char* form : {"drive/image_00/data/%010d.png", "drive/image_02/data/%010d.png"})
+      folder.write(numbered(form, i), grey_png(static_cast<uint8_t>(i)));
+  }
+  folder.write("drive/image_00/timestamps.txt", times);
+  folder.write("drive/image_02/timestamps.txt", times);
+  folder.write("calib_cam_to_cam.txt",
+               "calib_time: 09-Jan-2012 13:57:47\nS_rect_00: 32 32\nP_rect_00: 30.5 0 15.25 0 0 31 16 0 0 0 1 0\n"
+               "S_rect_02: 32 32\nP_rect_02: 33.5 0 15.25 7 0 34 16 0 0 0 1 0\n");
+  require_refused("images:" + (folder / "drive"), "in image_00/data to image_02/data",
+                  "--source images:" + (folder / "drive/image_00"));
+  require_frames("images:" + (folder / "drive/image_00"), 4, "calib_cam_to_cam.txt: is taken");
+  Opened colour("images:" + (folder / "drive/image_02"));
+  TEST_ASSERT_NOT_NULL_MESSAGE(colour.sequence, colour.message);
+  TEST_ASSERT_EQUAL_DOUBLE(33.5, colour.info.camera.fx);
+  TEST_ASSERT_EQUAL_INT64(300000000, colour.read(3).t_ns - colour.info.first_t_ns);
+}
+
+static void test_other_formats_should_be_named_whatever_the_case_of_letters() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("IMG_0001.HEIC", "no image");
+  require_refused("images:" + folder.path(), "but HEIC (IMG_0001.HEIC)", "mogrify -format png *.HEIC");
 }
 
 static void test_single_image_of_another_size_should_be_unusable_and_not_end_the_rest() {
@@ -234,6 +268,8 @@ int main() {
   RUN_TEST(test_two_streams_should_be_refused_with_what_to_type);
   RUN_TEST(test_previews_and_single_files_should_be_left_out_by_name);
   RUN_TEST(test_colour_images_of_kitti_should_be_taken_where_there_are_no_grey_ones);
+  RUN_TEST(test_kitti_raw_should_be_read_by_camera_with_the_calibration_above);
+  RUN_TEST(test_other_formats_should_be_named_whatever_the_case_of_letters);
   RUN_TEST(test_single_image_of_another_size_should_be_unusable_and_not_end_the_rest);
   RUN_TEST(test_numbers_of_fewer_bits_should_be_scaled_with_a_note);
   RUN_TEST(test_raw_thermal_images_should_be_stretched_with_a_note);

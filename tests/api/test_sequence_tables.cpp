@@ -79,6 +79,8 @@ static void test_times_should_be_read_in_the_forms_that_people_have() {
   require_read(
       "1.0;images\\00000.png\r\n1.05;images\\00001.png\r\n1.1;images\\00002.png\r\n1.15;images\\00003.png\r\n");
   require_read("1,0;00000.png\n1,05;00001.png\n1,1;00002.png\n1,15;00003.png\n");  // decimal commas
+  require_read("1,00 00000.png\n1,05 00001.png\n1,10 00002.png\n1,15 00003.png\n");
+  require_read("00000\t1,00\t7,5\n00001\t1,05\t7,5\n00002\t1,10\t8\n00003\t1,15\t8,25\n");
   require_read("1.0e0 00000.png\n1.05e+00 00001.png\n11e-1 00002.png\n0.115e1 00003.png\n");
   require_read("1.00\r1.05\r1.10\r1.15");  // of old Macs, without names
 }
@@ -135,6 +137,7 @@ static void test_columns_should_be_refused_by_name_when_they_are_not_known() {
   require_refused("7 1.00\n8 1.05\n", "2 columns");  // neither numbers of images nor a time alone
   require_refused("1.00 00000.tiff\n", "images are PNG, JPEG or PGM");
   require_refused("1.00 77\n1.05 78\n", "2 columns");
+  require_refused("0,90\n0,95\n1,00\n1,05\n", "'0,90' looks like a time with a decimal comma");
 }
 
 static void test_units_should_be_recognised_against_the_rate_of_the_calibration() {
@@ -173,6 +176,21 @@ static void test_names_should_give_times_when_they_are_times() {
   TemporaryFolder dated;
   write_images(dated, {"20240131235959900.png", "20240131235959950.png", "20240201000000000.png"});
   require_frames(Opened("images:" + dated.path()), {0, 1, 2}, {0, 50, 100});
+  TemporaryFolder before;  // a camera's name behind the time, a number before it
+  write_images(before,
+               {"7_1403636579763555584_left.png", "8_1403636579813555456_left.png", "9_1403636579863555584_left.png"});
+  require_frames(Opened("images:" + before.path()), {0, 1, 2}, {0, 49, 100});
+  TemporaryFolder minute;  // dates, over the end of a minute
+  write_images(minute, {"2024-01-31_23-59-59.950.png", "2024-02-01_00-00-00.030.png", "2024-02-01_00-00-00.090.png"});
+  const Opened dates("images:" + minute.path());
+  require_frames(dates, {0, 1, 2}, {0, 80, 140});
+  require_message(dates.info.warning, "dates in the names");
+  TemporaryFolder phone;
+  write_images(phone, {"IMG_20240131_235959970.png", "IMG_20240201_000000050.png", "IMG_20240201_000000120.png"});
+  require_frames(Opened("images:" + phone.path()), {0, 1, 2}, {0, 80, 150});
+  TemporaryFolder burst;  // numbers of frames behind a date
+  write_images(burst, {"20240131_120000_001.png", "20240131_120000_002.png", "20240131_120000_003.png"});
+  require_frames(Opened("images:" + burst.path()), {0, 1, 2}, {0, 50, 100});
   TemporaryFolder odd;  // in order of their numbers, but no camera's times
   write_images(odd, {"1.png", "1.5.png", "400.25.png", "977.125.png"});
   const Opened sorted("images:" + odd.path());

@@ -67,8 +67,47 @@ class Forms(unittest.TestCase):
         tum = rows_of([self.t, self.p, self.xyzw])
         commas = "timestamp,tx,ty,tz,qx,qy,qz,qw\n" + tum.replace(" ", ",")
         for text in (tum, "# T_WC: timestamp tx ty tz qx qy qz qw\n" + tum, tum.replace("\n", "\r\n"), b"\xef\xbb\xbf" + tum.encode(),
-                     b"\xff\xfe" + commas.encode("utf-16-le"), commas, tum.replace(".", ",").replace(" ", ";")):
+                     b"\xff\xfe" + commas.encode("utf-16-le"), commas, tum.replace(".", ",").replace(" ", ";"), tum.replace(".", ",")):
             self.require_read(self.write(text))
+
+    def test_row_numbers_and_names_of_images_should_be_passed_over(self):
+        rows = rows_of([self.t, self.p, self.xyzw]).splitlines()
+        for first in (0, 1):
+            self.require_read(self.write("".join(f"{k + first} {row}\n" for k, row in enumerate(rows))))
+        self.require_read(self.write("".join(f"{k:06d}.png {row}\n" for k, row in enumerate(rows))))
+        self.require_read(self.write("".join(f'{row.replace(" ", ",")},"rgb/{k:06d}.JPG"\n' for k, row in enumerate(rows))))
+        head = "filename,timestamp,tx,ty,tz,qx,qy,qz,qw\n"
+        self.require_read(self.write(head + "".join(f'{k:06d}.png,{row.replace(" ", ",")}\n' for k, row in enumerate(rows))))
+        self.require_refused("".join(f"{row} good\n" for row in rows), "'good' in column 9, which is no number")
+
+    def test_tables_of_ros_should_be_read_by_their_names(self):
+        since = 1600000000
+        stamps = [since + t for t in self.t]
+        place, turn = ["x", "y", "z"], ["x", "y", "z", "w"]
+        echo = ["%time", "field.header.seq", "field.header.stamp", "field.header.frame_id", *[f"field.pose.position.{a}" for a in place],
+                *[f"field.pose.orientation.{a}" for a in turn]]
+        numbers = [",".join(f"{v:.9f}" for v in row) for row in np.column_stack([self.p, self.xyzw])]
+        rows = [f"{round(1e9 * (t + 0.4))},{k},{round(1e9 * t)},map,{row}\n" for k, (t, row) in enumerate(zip(stamps, numbers))]
+        self.require_read(self.write(",".join(echo) + "\n" + "".join(rows)), since)
+        bag = ["Time", "header.seq", "header.stamp.secs", "header.stamp.nsecs", "header.frame_id", "child_frame_id", *[f"pose.pose.position.{a}" for a in place],
+               *[f"pose.pose.orientation.{a}" for a in turn], "twist.twist.linear.x"]
+        rows = [f"{t + 0.4:.6f},{k},{int(t)},{round(1e9 * (t % 1))},odom,base,{row},0.5\n" for k, (t, row) in enumerate(zip(stamps, numbers))]
+        self.require_read(self.write(",".join(bag) + "\n" + "".join(rows)), since)
+        self.require_refused(",".join([*bag[:-1], "battery.level"]) + "\n" + "".join(rows), "'battery.level'")
+
+    def test_matrices_should_be_read_with_a_time_or_number_before_them(self):
+        T = np.concatenate([self.R.as_matrix(), self.p[:, :, None]], axis=2)
+        self.require_read(self.write(rows_of([self.t, T.reshape(COUNT, 12)])))
+        numbers = 3 * np.arange(COUNT)  # KITTI-360 has poses of some frames
+        for rest in ((), (np.tile([0, 0, 0, 1], (COUNT, 1)),)):
+            read = read_trajectory(self.write(rows_of([numbers, T.reshape(COUNT, 12), *rest])))
+            self.assertTrue(read.counts)
+            np.testing.assert_array_equal(read.t, numbers)
+            np.testing.assert_allclose(read.p, self.p, atol=1e-7)
+
+    def test_other_files_of_poses_should_be_refused_by_name(self):
+        self.require_refused('{"frames": [{"file_path": "0.png"}]}', "is JSON")
+        self.require_refused("# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 1 0 0 0 0 0 0 1 0.png\n12 7 -1 14 8 -1\n", "COLMAP's images.txt")
 
     def test_columns_should_be_taken_by_their_header(self):
         head = "q_w,q_x,q_y,q_z,x [mm],y [mm],z [mm],time [ms]\n"
@@ -86,6 +125,7 @@ class Forms(unittest.TestCase):
             return "".join(f"{round(1e9 * (SINCE + t))}," + ",".join(f"{value:.9f}" for value in row) + "\n" for t, row in zip(self.t, numbers))
         self.require_read(self.write(rows()), SINCE, body=True)
         self.require_read(self.write(rows(np.zeros((COUNT, 9)))), SINCE, body=True)
+        self.require_read(self.write(rows(np.zeros((COUNT, 3))).replace("\n", ",\n")), SINCE, body=True)  # VINS
         head = "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
         self.require_read(self.write(head + rows()), SINCE, body=True)
 
@@ -187,6 +227,17 @@ class Evaluation(unittest.TestCase):
         truth.write_text(line + "\n" + rows)
         result, said = self.evaluate(truth)
         self.assertLess(result["ate_rmse_m"], 1e-5)
+        self.assertEqual(said, "")
+
+    def test_quaternions_with_w_first_should_get_a_note_that_can_be_typed(self):
+        truth = self.path / "truth.tum"
+        rows = rows_of([self.t, self.p, self.R.as_quat()[:, [3, 0, 1, 2]]])
+        truth.write_text(rows)
+        result, said = self.evaluate(truth)
+        self.assertGreater(result["rot_by_positions_rmse_deg"], 20)
+        truth.write_text(said.split("say the order: ")[1].splitlines()[0] + "\n" + rows)
+        result, said = self.evaluate(truth)
+        self.assertLess(result["rot_rmse_deg"], 1e-3)
         self.assertEqual(said, "")
 
     def test_a_run_without_times_should_be_refused_unless_it_has_the_rows_of_the_truth(self):

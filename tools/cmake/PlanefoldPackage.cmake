@@ -2,6 +2,10 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME planefold)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "A C library that gives a handheld device its own camera pose and a map of the
+planes around it, with the programs pf-capture (tracks a camera, a film or a
+folder), pf-eval (compares a run with ground truth), pf-sim and pf-bench.")
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/FinishDebianPackage.cmake)
 set(CPACK_PACKAGE_CONTACT "planefold maintainers <planefold@localhost>")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)

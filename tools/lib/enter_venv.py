@@ -25,7 +25,8 @@ def enter(source):
     made = subprocess.run(["bash", "-c", '. tools/lib/venv.sh && venv_python "$1"', "bash", venv], cwd=source, stdout=subprocess.PIPE,
                           text=True)
     if made.returncode != 0:
-        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: needs evo and matplotlib, and their Python environment could not be made")
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: needs evo and matplotlib, and their Python environment could not be made: it takes "
+                 "python3-venv (Debian: sudo apt-get install python3-venv), and a connection for the download")
     python = made.stdout.strip()
     os.environ["PLANEFOLD_VENV_ENTERED"] = "1"
     os.execv(python, [python, *sys.argv])

@@ -117,7 +117,8 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  *               and calib_cam_to_cam.txt              P_rect_00:          the same                               P_rect_00 .. P_rect_03
  *   colmap      COLMAP's cameras.txt                  its rows            (SIMPLE_)PINHOLE, (SIMPLE_)RADIAL,     camera 1, ..
  *                                                                         OPENCV, OPENCV_FISHEYE
- *   eth3d       ETH3D's calibration.txt               fx fy cx cy, alone  pinhole
+ *   eth3d       ETH3D's calibration.txt               fx fy cx cy, alone  pinhole; radtan with k1 k2 p1 p2 k3 behind them
+ *   mono_vo     camera.txt of the mono-VO data set    its four rows       Pinhole, RadTan, EquiDistant
  *   plain       this project, and files by hand       fx:                 none, radtan, equidistant,
  *                                                                         harris_division
  *

@@ -19,7 +19,7 @@ struct Form {
   void (*read)(const Fields& fields, const Asked& asked, Calibration& calibration);
 };
 
-extern const Form kColmapForm, kEth3dForm, kEurocForm, kKalibrForm, kKittiForm, kKittiRawForm, kOpencvForm,
+extern const Form kColmapForm, kEth3dForm, kEurocForm, kKalibrForm, kKittiForm, kKittiRawForm, kOpencvForm, kMonoVoForm,
     kOpenvslamForm, kOrbSlamForm, kOrbSlam3Form, kPlainForm, kRosForm, kRosMessageForm, kVinsForm;
 
 /// In the order in which they are tried.
@@ -45,8 +45,11 @@ std::vector<NamedCamera> kalibr_cameras(const Fields& fields);
 /// Rows of COLMAP's cameras.txt as fields "camera ID: MODEL WIDTH HEIGHT PARAMETERS"; any other text as it is.
 std::string from_colmap(const std::string& text);
 
-/// A row of four numbers, as ETH3D has it, as a field; any other text as it is.
+/// A row of four to nine numbers, as ETH3D has it, as a field; any other text as it is.
 std::string from_eth3d(const std::string& text);
+
+/// camera.txt of the photometric mono-VO data set as fields; any other text as it is.
+std::string from_mono_vo(const std::string& text);
 
 /// The number of frames per second of a field, or 0 where it is missing.
 double read_rate(const Fields& fields, const char* key);

@@ -6,9 +6,10 @@ namespace pf::sequence {
 
 const std::vector<const Form*>& all_forms() {
   // A form that has what another is known by, and more, comes before it. All but the plain one are read for what others wrote.
-  static const std::vector<const Form*> forms = {
-      &kKalibrForm,   &kEurocForm,   &kRosForm,   &kRosMessageForm, &kOpencvForm, &kVinsForm,  &kOpenvslamForm,
-      &kOrbSlam3Form, &kOrbSlamForm, &kKittiForm, &kKittiRawForm,   &kColmapForm, &kEth3dForm, &kPlainForm};
+  static const std::vector<const Form*> forms = {&kKalibrForm,  &kEurocForm,  &kRosForm,       &kRosMessageForm,
+                                                 &kOpencvForm,  &kVinsForm,   &kOpenvslamForm, &kOrbSlam3Form,
+                                                 &kOrbSlamForm, &kKittiForm,  &kKittiRawForm,  &kColmapForm,
+                                                 &kEth3dForm,   &kMonoVoForm, &kPlainForm};
   return forms;
 }
 

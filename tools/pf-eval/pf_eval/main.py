@@ -8,15 +8,14 @@ import sys
 import numpy as np
 
 from . import Refused
-from .association import associate
 from .camera import camera_of_run, read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
 from .files import list_maps, read_map, read_run, read_table
-from .notes import note
 from .options import arguments
 from .planes import compare_planes, folding, read_planes
 from .planes_truth import compare_planes_with_truth
+from .plausible import tell_lengths, tell_order
 from .relative import compare_motions
 from .there_and_back import compare_passes, forward
 from .trajectories import on_one_clock
@@ -95,19 +94,6 @@ def times_of_frames(frames, report):
     return np.concatenate([np.full(int(report.get("skip") or 0), np.nan), frames["t_s"]])
 
 
-def tell_lengths(run, truth, align):
-    """A note where a run in metres and its truth differ by a unit of length."""
-    estimate, matched, _ = associate(run, truth)
-    spreads = [np.linalg.norm(poses.p - poses.p.mean(axis=0)) for poses in (matched, estimate)]
-    if align == "sim3" or not min(spreads) > 0:
-        return
-    for unit, factor in (("mm", 1000.0), ("cm", 100.0)):
-        for ratio, file in ((spreads[0] / spreads[1], truth), (spreads[1] / spreads[0], run)):
-            if 0.7 < ratio / factor < 1.4:
-                note(f"{file.source}: its path is {ratio:.3g} times as large as the other; lengths are metres: a first line can say the unit: "
-                     f"# timestamp, x [{unit}], y [{unit}], z [{unit}], qx, qy, qz, qw")
-
-
 def compare_maps(report, folder, truth, align):
     """Each map of a run by itself, aligned by itself; nothing where there is one map only. The frames of all but the largest map count as
     untracked."""
@@ -138,6 +124,7 @@ def evaluate_truth(options):
     align = options.align or default_alignment(report)
     result = compare(run, truth, align, own_frame=report.get("start") != "auto")
     tell_lengths(run, truth, align)
+    tell_order(run, truth, result)
     if options.per_frame:
         columns = [result.t[:, None], result.position_error, result.rotation_error]
         names = "t_s,e_x_m,e_y_m,e_z_m,theta_x_rad,theta_y_rad,theta_z_rad"

@@ -29,10 +29,13 @@ def read_text(path):
 
 
 def split(line):
-    """Fields of a line: cut at commas, at semicolons (then with decimal commas), or at blanks; without quotes."""
+    """Fields of a line: cut at commas, at semicolons or blanks (both also with decimal commas); without quotes."""
     if ";" in line:
         return [re.sub(r"^([-+\d]*),(\d)", r"\1.\2", word.strip()) for word in next(csv.reader([line], delimiter=";"))]
     if "," in line:
+        words = line.split()
+        if len(words) > 1 and all(re.fullmatch(r"[-+]?\d+(,\d+)?(e[-+]?\d+)?", word, re.IGNORECASE) for word in words):
+            return [word.replace(",", ".") for word in words]
         fields = [word.strip() for word in next(csv.reader([line], skipinitialspace=True))]
         return fields[:-1] if fields and not fields[-1] else fields
     return [word.strip('"') for word in line.split()]
@@ -58,10 +61,13 @@ def is_number(word):
 
 
 class Table:
-    """numbers (n, columns), lines (n) in the file, header: names or None; has_header_row: it is no remark behind a #."""
+    """numbers (n, columns), lines (n) in the file, header: names or None; has_header_row: it is no remark behind a #.
 
-    def __init__(self, path):
-        self.path, self.header, self.lines = path, None, []
+    texts  {column: word of the first row} of columns that begin with a word, which are NaN in numbers; refused unless asked for
+    """
+
+    def __init__(self, path, texts=False):
+        self.path, self.header, self.lines, self.texts = path, None, [], {}
         rows, remark = [], None
         for number, line in enumerate(read_text(path).splitlines(), 1):
             line = line.strip()
@@ -74,12 +80,14 @@ class Table:
             if not rows and self.header is None and not any(is_number(word) for word in fields):
                 self.header = split_header(line)
                 continue
-            for column, word in enumerate(fields, 1):
-                if not is_number(word):
-                    raise Refused(f"{path}: line {number} has '{word}' in column {column}, which is no number")
+            for column, word in enumerate(fields):
+                if texts and not rows and not is_number(word):
+                    self.texts[column] = word
+                elif not is_number(word) and column not in self.texts:
+                    raise Refused(f"{path}: line {number} has '{word}' in column {column + 1}, which is no number")
             if rows and len(fields) != len(rows[0]):
                 raise Refused(f"{path}: line {number} has {len(fields)} columns, the rows before have {len(rows[0])}")
-            rows.append([float(word) for word in fields])
+            rows.append([float("nan" if column in self.texts else word) for column, word in enumerate(fields)])
             self.lines.append(number)
         if not rows:
             raise Refused(f"{path}: is empty")
@@ -90,8 +98,8 @@ class Table:
         elif self.header is not None and len(self.header) != len(rows[0]):
             raise Refused(f"{path}: its header names {len(self.header)} columns, and line {self.lines[0]} has {len(rows[0])}")
 
-    def require_finite(self):
-        bad = np.flatnonzero(~np.isfinite(self.numbers).all(axis=1))
+    def require_finite(self, columns):
+        bad = np.flatnonzero(~np.isfinite(self.numbers[:, columns]).all(axis=1))
         if len(bad):
             raise Refused(f"{self.path}: line {self.lines[bad[0]]} has a number that is not finite")
 

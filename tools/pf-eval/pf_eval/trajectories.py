@@ -1,12 +1,13 @@
 """Trajectories as programs and data sets write them.
 
   TUM     8 columns: timestamp tx ty tz qx qy qz qw, cut by blanks or commas
-  EuRoC   8 or 17 columns of a CSV in nanoseconds: timestamp, px, py, pz, qw, qx, qy, qz, and velocity and biases, which are passed over
-  KITTI   12 columns without a time: the upper three rows of T_WC; 16 columns: all four
+  EuRoC   8 or 17 columns of a CSV in nanoseconds: timestamp, px, py, pz, qw, qx, qy, qz, and velocity and biases, which are passed over;
+          11 are VINS'
+  KITTI   12 columns without a time: the upper three rows of T_WC; 16 columns: all four; before them a time or the number of the frame
   folder  a file of four rows for each frame, as frame-000012.pose.txt
-  header  columns in any order where the first line names them
+  header  columns in any order where the first line names them, as ROS names them too
 
-Anything else is refused by file, row and what was met.
+Numbers of rows before a time, and names of images, are passed over. Anything else is refused by file, row and what was met.
 """
 
 import pathlib
@@ -16,13 +17,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from . import Refused
+from .columns import TIMES, by_header, refuse_other_files, without_names
 from .notes import note
-from .tables import Table, is_number, read_text, split, split_unit
+from .tables import Table, is_number, read_text, split
 
-KNOWN = ("known are 8 (TUM: timestamp tx ty tz qx qy qz qw), 8 or 17 of a CSV in nanoseconds (EuRoC: timestamp, position, qw, qx, qy, qz, ..), "
-         "12 or 16 (KITTI: rows of T_WC), or a header that names them")
-TIMES = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+KNOWN = ("known are 8 (TUM: timestamp tx ty tz qx qy qz qw), 8, 11 or 17 of a CSV in nanoseconds (EuRoC: timestamp, position, qw, qx, qy, qz, ..), "
+         "12 or 16 (KITTI: rows of T_WC), 13 or 17 with a time or number before them, or a header that names them")
+MAX_FRAMES = 1e8  # whole numbers below are numbers of frames
 FIRST_NS = 1e17  # whole numbers from here on are nanoseconds since 1970, below these are of finer units than seconds
 SINCE_1970 = ((FIRST_NS, "ns", "nanoseconds"), (1e14, "us", "microseconds"), (1e11, "ms", "milliseconds"))
 UNIT_QUATERNION = 0.01
@@ -59,46 +60,6 @@ class Trajectory:
     def path(self):
         """Length of the way [m]."""
         return float(np.linalg.norm(np.diff(self.p, axis=0), axis=1).sum())
-
-
-def _role(column):
-    """What a column of a header holds: t, px .. pz, qw .. qz, "" for what is passed over, None for what is not known; and its unit."""
-    name, unit = split_unit(column)
-    short = re.sub(r"[^a-z]", "", re.sub(r"_?rs_[rs]?|_rs", "", name))
-    if name in ("t", "time", "timestamp", "timestamps", "stamp", "seconds", "sec"):
-        return "t", unit or {"seconds": "s", "sec": "s"}.get(name, "")
-    found = re.fullmatch(r"(?:p|t|pos|position|translation|trans)?([xyz])", short)
-    if found:
-        return "p" + found[1], unit
-    found = re.fullmatch(r"(?:q|quat|quaternion|orientation|rot|rotation)([wxyz])", short)
-    if found:
-        return "q" + found[1], unit
-    return ("" if re.match(r"(v|b|bw|ba|vel|bias|velocity)([xyz_]|$)", name) else None), unit
-
-
-def _by_header(table):
-    """{role: column} and factors of time and length, or None where the header is a remark."""
-    roles, factors = {}, {"t": None, "p": 1.0}
-    unknown = []
-    for column, name in enumerate(table.header):
-        role, unit = _role(name)
-        if role is None:
-            unknown.append(name)
-        elif role:
-            if role in roles:
-                raise Refused(f"{table.path}: its header names column '{name}' twice")
-            roles[role] = column
-            known = TIMES if role == "t" else LENGTHS
-            if unit and role[0] in "tp":
-                if unit not in known:
-                    raise Refused(f"{table.path}: the unit of its column '{name}' is not known; known are {', '.join(known)}")
-                factors[role[0]] = known[unit]
-    wanted = {"t", "px", "py", "pz", "qw", "qx", "qy", "qz"}
-    if set(roles) != wanted:
-        return None
-    if unknown:
-        raise Refused(f"{table.path}: its column '{unknown[0]}' is not known; known are a time, a position, a quaternion, velocity and biases")
-    return roles, factors
 
 
 def _clean(path, t, p, q, lines, **kinds):
@@ -156,20 +117,28 @@ def read_trajectory(path):
     path = pathlib.Path(path)
     if path.is_dir():
         return read_pose_files(path)
-    table = Table(path)
-    numbers, lines = table.numbers, table.lines
-    columns = numbers.shape[1]
-    named = _by_header(table) if table.header else None
+    refuse_other_files(path)
+    table = Table(path, texts=True)
+    named = by_header(table) if table.header else None
     if table.has_header_row and not named:
         raise Refused(f"{path}: its header ({', '.join(table.header)}) names no time, position and quaternion; {KNOWN}")
-    table.require_finite()
     if named:
-        roles, factors = named
-        pick = lambda *names: numbers[:, [roles[name] for name in names]]  # noqa: E731
-        return _clean(path, _seconds(path, numbers[:, roles["t"]], factors["t"]), factors["p"] * pick("px", "py", "pz"), pick("qw", "qx", "qy", "qz"),
-                      lines, of_body=any("_rs_" in name.lower() for name in table.header))
+        t, unit, p, q = named
+        return _clean(path, _seconds(path, t, unit), p, q, table.lines, of_body=any("_rs_" in name.lower() for name in table.header))
+    return _by_count(path, without_names(table), table.lines)
+
+
+def _by_count(path, numbers, lines):
+    """A trajectory by how many columns there are."""
+    columns = numbers.shape[1]
+    if columns == 9 and _is_counting(numbers[:, 0]) and not _is_counting(numbers[:, 1]):
+        numbers, columns = numbers[:, 1:], 8
+    if columns in (13, 17) and (columns == 13 or _are_whole_matrices(numbers)):
+        p, q = _matrices(path, numbers[:, 1:], lines)
+        counts = bool((numbers[:, 0] == np.floor(numbers[:, 0])).all() and np.median(numbers[:, 0]) < MAX_FRAMES)
+        return _clean(path, numbers[:, 0] if counts else _seconds(path, numbers[:, 0]), p, q, lines, counts=counts)
     whole_ns = (numbers[:, 0] == np.floor(numbers[:, 0])).all() and np.median(numbers[:, 0]) > FIRST_NS
-    if columns == 17 or (columns == 8 and whole_ns and _is_cut_by_commas(path)):
+    if columns == 17 or (columns in (8, 11) and whole_ns and _is_cut_by_commas(path)):
         return _clean(path, 1e-9 * numbers[:, 0], numbers[:, 1:4], numbers[:, 4:8], lines, of_body=True)
     if columns == 8:
         return _clean(path, _seconds(path, numbers[:, 0]), numbers[:, 1:4], numbers[:, [7, 4, 5, 6]], lines)
@@ -178,6 +147,10 @@ def read_trajectory(path):
         t = _times_beside(path, len(p))
         return _clean(path, np.arange(len(p)) if t is None else t, p, q, lines, counts=t is None)
     raise Refused(f"{path}: line {lines[0]} has {columns} columns; {KNOWN}")
+
+
+def _are_whole_matrices(numbers):
+    return (numbers[:, -4:] == [0, 0, 0, 1]).all()
 
 
 def _is_cut_by_commas(path):
