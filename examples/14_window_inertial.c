@@ -123,6 +123,7 @@ int main(void) {
   path((FRAMES - 1) / 30.0, p, &angle);
   for (k = 0; k < 3; ++k) off += (pose.p_WC[k] - p[k]) * (pose.p_WC[k] - p[k]);
   printf("metres after %.1f s of motion; the scale is known to %.1f %%\n", at_s, 100.0 * unit.sigma.log_scale);
+  printf("gravity in W %.2f %.2f %.2f m/s2\n", unit.gravity_W[0], unit.gravity_W[1], unit.gravity_W[2]);
   printf("after %.0f s the camera is %.1f cm from where it should be, in map %lu\n", FRAMES / 30.0, 100.0 * sqrt(off),
          (unsigned long)pose.map_id);
   free(block);
