@@ -6,6 +6,7 @@
 #include <planefold_platform/walls.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <initializer_list>
