@@ -19,12 +19,11 @@ void MapPlacement::carry(Archive& archive) {
 
 /// The tables of the map have been carried. Where there is a pose there is a keyframe, except in a map that was loaded and is not found.
 void KeyframeSlam::carry(Archive& archive) {
-  auto& [body_ns, since_last_ns, median_depth, is_map_fixed, follows, has_image, young, second, frozen, warnings] =
-      data_;
+  auto& [body_ns, since_last_ns, median_depth, is_map_fixed, has_image, young, second, frozen, warnings] = data_;
   auto& [given, second_ns, second_W, estimated, estimate_W] = second;
   archive.any(body_ns, since_last_ns, second_ns);
   archive.numbers(median_depth, second_W, estimate_W);
-  archive.flags(is_map_fixed, follows, has_image, young, given, estimated);
+  archive.flags(is_map_fixed, has_image, young, given, estimated);
   frozen.carry(archive);
   warnings.carry(archive);
   map_.carry(archive);

@@ -110,12 +110,12 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   data_.since_last_ns = frame_.report.frames > 0 ? elapsed_ns(before_ns, t_ns) : 0;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
-  data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !record_.progress().pending();
+  const bool follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !record_.progress().pending();
   tracking_.begin_frame(data_.since_last_ns);
   if (!tracking_.has_pose() || data_.since_last_ns == 0) return motion_.forget_control();
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
   const bool coasts = tracking_.coasting_or_lost();
-  if (!unit_.predict(before_ns, data_.follows, coasts, nothing_measured, data_.median_depth))
+  if (!unit_.predict(before_ns, follows, coasts, nothing_measured, data_.median_depth))
     motion_.advance(before_ns, t_ns, coasts, nothing_measured);
 }
 
@@ -180,8 +180,7 @@ void KeyframeSlam::learn() {
 
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
-  const char* const why =
-      unit_.leaves_metres(placement_.map_of_unit(data_.median_depth), data_.follows, data_.since_last_ns);
+  const char* const why = unit_.leaves_metres(placement_.map_of_unit(data_.median_depth), data_.since_last_ns);
   if (why != nullptr) placement_.leave_metres(why);
   if (tracking_.has_pose() && !motion_.is_sound()) {
     const std::uint32_t map_id = tracking_.map_id();

@@ -68,7 +68,6 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     bool is_map_fixed = false;       ///< the map has come from what stands still in the image
-    bool follows = false;            ///< the frame before was tracked
     bool has_image = false;          ///< this frame
     bool young = false;  ///< in this frame so few points have a depth that those without are used for the pose
     SecondPose second;

@@ -246,10 +246,10 @@ bool KeyframeUnit::look_for_scale(const MapOfUnit& map, MovingSolution* solution
   return true;
 }
 
-const char* KeyframeUnit::leaves_metres(const MapOfUnit& map, bool follows, std::int64_t dt_ns) {
+const char* KeyframeUnit::leaves_metres(const MapOfUnit& map, std::int64_t dt_ns) {
   using tuning::moving_verdict::kLateSigmaScale;
   if (!has_begun()) return nullptr;
-  const bool rejected = parts_->watch.note(follows && !parts_->hold.holds(), map.is_tracked, dt_ns);
+  const bool rejected = parts_->watch.note(data_.follows && !parts_->hold.holds(), map.is_tracked, dt_ns);
   if (rejected && parts_->watch.is_map_on_trial() && !map.knows_scale) {
     parts_->watch.take(UnitEvent::kNewMap);
     begin_map();

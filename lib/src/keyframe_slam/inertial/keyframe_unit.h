@@ -51,7 +51,7 @@ class KeyframeUnit {
   bool look_for_scale(const MapOfUnit& map, MovingSolution* solution);
   /// At the end of a frame, dt_ns after the one before: why the samples that gave this map its metres give it none any more, in words;
   /// null: they do. They are contradicted, or the map has become another one whose size is not known.
-  const char* leaves_metres(const MapOfUnit& map, bool follows, std::int64_t dt_ns);
+  const char* leaves_metres(const MapOfUnit& map, std::int64_t dt_ns);
   /// After the adjustment of a keyframe: what the map may have moved in W. Returns by how much it is to be moved.
   Similarity follow_adjustment(const KeyframeAdjustment& adjustment);
   /// All of W is moved.

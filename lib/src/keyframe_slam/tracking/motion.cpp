@@ -117,13 +117,12 @@ bool KeyframeMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) 
   const Vec6 dv = K_v.lazyProduct(e.cast<double>()).cast<Scalar>();
   data_.body.q_WC = q_WC;
   data_.body.p_W = p_W;
-  data_.measured = {false, q_WC, p_W, R.cast<Scalar>()};
   SmallCholesky<6, double> predicted;
-  if (predicted.factor(A)) {
+  if (settings_.inertial && predicted.factor(A)) {
+    data_.measured = {true, q_WC, p_W, R.cast<Scalar>()};
     const Vec6 more = R.lazyProduct(predicted.solve<1>(Eigen::Matrix<double, 6, 1>(e.cast<double>()))).cast<Scalar>();
     data_.measured.q_WC = (exp_so3(more.head<3>()) * q_WC).normalized();
     data_.measured.p_W += more.tail<3>();
-    data_.measured.is_set = true;
   }
   if (has_velocity()) {
     data_.body.v_W += dv.head<3>();

@@ -61,7 +61,8 @@ class KeyframeMotion {
     data_.body.v_W = v_W;
     data_.body.w_C = w_C;
   }
-  /// What this frame's pixels alone have measured of the pose. A fit x to them and to the prediction x_p, with its covariance P, is
+  /// With an inertial unit: what this frame's pixels alone have measured of the pose. A fit x to them and to the prediction x_p, with its
+  /// covariance P, is
   ///
   ///   (P⁻¹ + R⁻¹) x = P⁻¹ x_p + R⁻¹ z,   z = x + R P⁻¹ (x - x_p)
   struct MeasuredPose {
