@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "base/always_inline.h"
 #include "base/scalar.h"
 
 namespace pf {
@@ -27,15 +28,15 @@ struct Triangle {
     const std::size_t groups = static_cast<std::size_t>((rows + kGroup - 1) / kGroup);
     return 32 * groups * (groups + 1);
   }
-  static constexpr std::size_t offset(int i) {
+  static constexpr PF_ALWAYS_INLINE std::size_t offset(int i) {
     const std::size_t q = static_cast<std::size_t>(i) / kGroup;
     return 32 * q * (q + 1) + (static_cast<std::size_t>(i) % kGroup) * kGroup * (q + 1);
   }
 
-  Scalar* row(int i) { return data + offset(i); }
-  const Scalar* row(int i) const { return data + offset(i); }
-  Scalar operator()(int i, int j) const { return i >= j ? row(i)[j] : row(j)[i]; }
-  void set(int i, int j, Scalar value) { (i >= j ? row(i)[j] : row(j)[i]) = value; }
+  PF_ALWAYS_INLINE Scalar* row(int i) { return data + offset(i); }
+  PF_ALWAYS_INLINE const Scalar* row(int i) const { return data + offset(i); }
+  PF_ALWAYS_INLINE Scalar operator()(int i, int j) const { return i >= j ? row(i)[j] : row(j)[i]; }
+  PF_ALWAYS_INLINE void set(int i, int j, Scalar value) { (i >= j ? row(i)[j] : row(j)[i]) = value; }
 };
 
 }  // namespace pf

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/always_inline.h"
+
 #if defined(PLANEFOLD_PLAIN_VISION)
 #elif defined(__SSE2__)
 #include <emmintrin.h>
@@ -15,8 +17,6 @@
 #include <arm_neon.h>
 #define PF_VISION_NEON 1
 #endif
-
-#define PF_ALWAYS_INLINE inline __attribute__((always_inline))
 
 namespace pf {
 
