@@ -27,8 +27,8 @@ constexpr const char* kFooter =
     "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, frames.csv, map.ply,\n"
     "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, lens.csv where the lens is estimated,\n"
     "calib_found.yaml where there was no calibration,\n"
-    "inertial.csv where a unit's samples are used, anchors.csv where an anchor was set, and truth.tum and "
-    "truth_planes.json where the source knows them.\n"
+    "inertial.csv where a unit's samples are used, anchors.csv where an anchor was set, corrections.csv where the\n"
+    "map has moved, and truth.tum and truth_planes.json where the source knows them.\n"
     "Poses in a second map, which has a world of its own, go into trajectory_2.txt and so on.\n"
     "Exit code: 0 done, 1 the run failed, ended early, tracked nothing, or was lost at the end or most of the time,\n"
     "2 the command line is wrong, or a file that it names beside the frames: calibration, start, walls, noise, mount.";

@@ -198,6 +198,28 @@ bool Outputs::open_anchors(std::string& error) {
   return true;
 }
 
+/// A row of corrections.csv where poses that were given out before have moved, or their map goes on under another id.
+bool Outputs::put_correction(const FrameView& view, std::string& error) {
+  const pf_report_t& r = view.report;
+  const double* const q = r.correction_q;
+  const double* const p = r.correction_p;
+  const bool has_moved = r.correction_scale != 1 || q[0] != 1 || p[0] != 0 || p[1] != 0 || p[2] != 0;
+  if (!has_moved && r.correction_from_map_id == r.map_id) {
+    return true;
+  }
+  if (!corrections_.is_open()) {
+    if (!create(corrections_, "corrections.csv", error)) {
+      return false;
+    }
+    corrections_.rows() = "t_s,from_map,map,scale,qw,qx,qy,qz,px,py,pz\n";
+  }
+  std::string& rows = corrections_.rows();
+  put_seconds(rows, view.image.t_ns);
+  append(rows, ",%u,%u,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", r.correction_from_map_id, r.map_id,
+         r.correction_scale, q[0], q[1], q[2], q[3], p[0], p[1], p[2]);
+  return true;
+}
+
 bool Outputs::write(const FrameView& view, Source& source, const MotionWindow* window, std::string& error) {
   pf_pose_t truth{};
   const pf_report_t& report = view.report;
@@ -245,10 +267,13 @@ bool Outputs::write(const FrameView& view, Source& source, const MotionWindow* w
   if (anchors_.is_open()) {
     put_anchors(anchors_.rows(), view);
   }
+  if (!put_correction(view, error)) {
+    return false;
+  }
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
   for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &planes_, &patches_, &truth_,
-                         &relative_, &lens_, &inertial_, &anchors_, &frames_}) {
+                         &relative_, &lens_, &inertial_, &anchors_, &corrections_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

@@ -26,7 +26,7 @@ class Outputs {
   /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose; of the second map
   /// trajectory_2.txt and so on, since each map has a world of its own;
   /// frames.csv in every frame, tracks.csv and planes.csv, patches.csv; anchors.csv from the first
-  /// anchor on; truth.tum where the source knows the truth
+  /// anchor on, corrections.csv where the map has moved; truth.tum where the source knows the truth
   /// of its last frame. false: error is one line (disk full, say).
   /// A row of relative.csv where window is not null; of lens.csv where the frame was tracked and the lens is estimated;
   /// of inertial.csv where there is a pose that depends on a unit's samples.
@@ -46,10 +46,11 @@ class Outputs {
   bool open_again(TextFile& file, const std::string& name, std::string& error) const;
   bool open_map(int map, std::string& error);
   bool open_anchors(std::string& error);
+  bool put_correction(const FrameView& view, std::string& error);
 
   std::filesystem::path folder_;
   TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, planes_, patches_, truth_, relative_, lens_,
-      inertial_, anchors_;
+      inertial_, anchors_, corrections_;
   TrackRows track_rows_;
   int map_ = 0;          ///< whose files are open
   int maps_opened_ = 0;  ///< so far: 1 .. this

@@ -1,4 +1,5 @@
-"""pf-capture --anchor on a rendered room: anchors.csv follows what was set, on the true plane; a saved map brings it back in another run."""
+"""pf-capture --anchor on a rendered room: anchors.csv follows what was set, on the true plane; a saved map brings it back in another run;
+corrections.csv has a row where poses have moved: of the filter as soon as there is an anchor."""
 
 import csv
 import json
@@ -31,6 +32,17 @@ def position(row):
     return [float(row[key]) for key in ("px", "py", "pz")]
 
 
+def check_corrections(out, backend):
+    rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader((out / "corrections.csv").open())]
+    require(rows, "nothing is corrected")
+    for row in rows:
+        require(row["from_map"] == row["map"] == 1 and row["scale"] == 1, f"a map with a target is renamed or scaled: {row}")
+        require(abs(sum(row[key] ** 2 for key in ("qw", "qx", "qy", "qz")) - 1) < 1e-9, f"no rotation: {row}")
+    if backend == "filter":
+        first = [line.split(",")[0] for line in (out / "frames.csv").read_text().splitlines()[1:]][60]
+        require(rows[0]["t_s"] > float(first) and len(rows) > 50, f"{len(rows)} corrections from {rows[0]['t_s']} s on, the anchor is of {first} s")
+
+
 def check_run(folder, backend):
     out, room = folder / backend, folder / "room.pfmap"
     more = ["--save-map", room] if backend == "window" else []
@@ -45,6 +57,7 @@ def check_run(folder, backend):
         off = min(abs(sum(n * p for n, p in zip(plane["normal"], position(row))) - plane["distance"]) for plane in truth)
         sigma = max(float(row[key]) for key in ("c33", "c44", "c55")) ** 0.5
         require(0 < sigma < 0.05 and off < 0.002 + 4 * sigma, f"frame {row['frame']}: {off} m off, sigma {sigma}")
+    check_corrections(out, backend)
     if backend != "window":
         return
     _, again = run(folder / "again", "--backend", backend, "--frames", 60, "--map", room)

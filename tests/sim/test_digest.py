@@ -41,8 +41,9 @@ with tempfile.TemporaryDirectory(prefix="planefold_") as name:
 
     lines = once.read_text().splitlines()
     kinds = lines[1].split()[1:]
-    # What a plain run lacks: templates, a lens that is estimated, an inertial unit.
+    # What a plain run lacks: templates, a lens that is estimated, an inertial unit, corrections.
     richer = [digest(folder / "masks", "sim:desk", "--masks", "--lens", "--frames", "40"),
+              digest(folder / "window", "sim:desk", "--backend", "window", "--frames", "60"),
               digest(folder / "unit", "sim:room", "--auto", "--imu", "--frames", "60"),
               digest(folder / "long", "sim:desk", "--frames", "101")]
     runs = [lines, *(file.read_text().splitlines() for file in richer)]

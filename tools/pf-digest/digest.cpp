@@ -51,10 +51,12 @@ enum Kind {
   kTemplates,
   kLens,
   kInertial,
+  kCorrection,
   kKinds
 };
-constexpr const char* kNames[kKinds] = {"state", "pose", "predicted", "features", "planes",    "matches", "report",
-                                        "hits",  "imu",  "gauge",     "patches",  "templates", "lens",    "inertial"};
+constexpr const char* kNames[kKinds] = {"state",   "pose",      "predicted", "features", "planes",
+                                        "matches", "report",    "hits",      "imu",      "gauge",
+                                        "patches", "templates", "lens",      "inertial", "correction"};
 
 /// FNV-1a over whole numbers; all zeros are one number, and so are all NaN.
 class Hash {
@@ -292,6 +294,8 @@ void write_digest(const pf_slam_t* slam, pf_status_t pushed) {
   const pf_status_t has_inertial = pf_get_inertial(slam, &inertial);
   h[kInertial] << has_inertial;
   if (has_inertial == PF_OK) add(h[kInertial], inertial);
+  h[kCorrection] << report.correction_scale << report.correction_q << report.correction_p
+                 << report.correction_from_map_id;
 
   std::string line;
   if (hashes.is_empty()) {

@@ -41,8 +41,9 @@
  * images, it is left and a new one begins: a new map_id, a new W, and, without a target in view, a
  * new unit of length. The window keeps the places of a map that is left (capacity.max_places):
  * where two views of the new map are recognised in it, the new map goes on in its W and unit, under
- * its map_id. With walls (pf_add_wall) a map is searched for until it is found, and so is one that
- * was loaded (pf_load_map).
+ * its map_id. Where a map goes on under another map_id, pf_report_t.correction_from_map_id names
+ * the one before, and the correction is the way to the new W. With walls (pf_add_wall) a map is
+ * searched for until it is found, and so is one that was loaded (pf_load_map).
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -997,6 +998,22 @@ typedef struct pf_report {
   int32_t reason;          /* pf_frame_reason_t */
   int32_t places;          /* of capacity.max_places: that are kept */
   int32_t places_returned; /* since the beginning: how often one has come back to window or state */
+  /* By how much poses that were given out before have moved in this frame, where the camera is now:
+   * what was at p in W, with the rotation R_WC, is at
+   *
+   *   p_new = correction_scale R p + correction_p,   R_new = R R_WC    R by correction_q (w x y z)
+   *
+   * Exact for all of the map where it moves as a whole: it gets its scale, is joined to another
+   * one, or is placed by walls or samples. Else it is that of one camera: with PF_BACKEND_WINDOW,
+   * after an adjustment, of this frame's; with PF_BACKEND_FILTER, after updates, of the newest copy
+   * of a camera in the state (of an anchor, a mark, a patch or a place); without one updates are
+   * not reported. Each anchor moves by itself. The identity where nothing moves, in a new map,
+   * while starting, and where a camera is found again: its jump is no correction. */
+  double correction_scale, correction_q[4], correction_p[3];
+  /* The map in whose W those poses were given out: map_id, unless the map goes on under another id
+   * (MAPS). All that was given out in it is then of map_id once it is corrected. */
+  uint32_t correction_from_map_id;
+  uint32_t reserved; /* 0 */
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -55,7 +55,7 @@ void Filter::carry(Archive& archive) {
   apart_.carry(archive);
   archive.flags(keep_gauge_);
   archive.within(told_updates_, -1, Archive::kMaxCount);
-  archive.any(generation_);
+  archive.any(generation_, cameras_);
   archive.numbers(roughness_);
   if (!archive.is_reading()) return;
   transport_.init();

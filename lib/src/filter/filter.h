@@ -289,8 +289,8 @@ class Filter {
   Transport transport_;
   GaugePrior apart_;
   bool keep_gauge_ = true;
-  int told_updates_ = 0;  ///< for which something still measures the gauge; -1: for good
-  std::uint32_t generation_ = 0;
+  int told_updates_ = 0;                        ///< for which something still measures the gauge; -1: for good
+  std::uint32_t generation_ = 0, cameras_ = 0;  ///< copies of the camera so far
   Scalar roughness_ = 0;
   Measurement* view_ = nullptr;  ///< observations; of pixels
   Vec3* place_ = nullptr;        ///< slots; of points, scratch of scale_row

@@ -22,6 +22,7 @@ int Filter::add_reference_camera() {
   const Scalar none[36] = {};
   blocks_.augment(slot, J, none);
   model::ReferenceCamera::set(&state_.block[slot], camera.q_WC, camera.p_W);
+  state_.block[slot].owner = static_cast<std::int16_t>(cameras_++ & INT16_MAX);
   return slot;
 }
 

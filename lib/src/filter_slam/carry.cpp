@@ -68,6 +68,14 @@ void UnitKeeper::carry(Archive& archive) {
   parts_->forces.carry(archive);
 }
 
+/// A slot and a number that name no camera of the state are those of one that has left it.
+void FollowedCamera::carry(Archive& archive) {
+  auto& [slot, number, q_WK, p_WK] = data_;
+  archive.within(slot, -1, filter_.state().slots - 1);
+  archive.any(number);
+  archive.numbers(q_WK, p_WK);
+}
+
 /// The map has been carried.
 void FilterSlam::carry(Archive& archive) {
   auto& [frozen, filter_ns, since_last_ns, image_usable, follows, map_discredited, median_depth] = data_;
@@ -85,6 +93,7 @@ void FilterSlam::carry(Archive& archive) {
   images_.carry(archive);
   start_.carry(archive);
   unit_.carry(archive);
+  followed_.carry(archive);
 }
 
 }  // namespace pf

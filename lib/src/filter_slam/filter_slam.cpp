@@ -30,6 +30,7 @@ void FilterSlam::init() {
   data_ = Data();
   motion_.init();
   unit_.init();
+  followed_.init();
   images_.init();
   start_.init();
   upkeep_.init();
@@ -87,6 +88,7 @@ void FilterSlam::maintain(bool supported, bool is_first) {
   // While the map starts, residuals are those of a coarse map.
   if (supported && tracking_.state() == SlamState::kTracking && !progress.recording) images_.learn_noise();
   upkeep_.maintain(supported, progress);
+  followed_.note(&frame_.correction);
   if (recorder.record_frame(true)) images_.relocaliser().init();  // its views have poses of the wrong map
   const Scalar scale = supported && !is_first ? start_.look_for_walls() : Scalar(0);
   if (scale > Scalar(0)) {  // places and lengths of before no longer hold
@@ -96,6 +98,7 @@ void FilterSlam::maintain(bool supported, bool is_first) {
     upkeep_.forget_places();
   }
   const bool begins_anew = look_for_scale() && map_.features.count() == 0;
+  followed_.follow_newest();
   upkeep_.follow_places(recorder.is_recording(), data_.median_depth);
   // A frame that does not support its pose adds features only to a map that has none to lose.
   const bool empty = is_first || progress.pending() || (map_.features.count() == 0 && !upkeep_.is_in_loaded_map());
@@ -119,8 +122,10 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     StartRecorder& recorder = start_.recorder();
     upkeep_.maintain(true, recorder.progress());
+    followed_.note(&frame_.correction);
     recorder.record_frame(false);
     look_for_scale();
+    followed_.follow_newest();
     observations_.add_features(observations, count);
     recorder.begin_record();
   }
@@ -163,6 +168,7 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   const bool nothing_measured = frame_.report.inliers == 0;
   data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.recorder().progress().pending();
   frame_.begin(t_ns);
+  followed_.note(&frame_.correction);
   if (data_.map_discredited) begin_new_map(unit_.why_discredited());
   if (images_.is_map_fixed() && tracking_.has_pose() && !map_.planes.has_known())
     begin_new_map("part of the image stands still while the rest moves, and is masked from now on");
@@ -204,6 +210,7 @@ Status FilterSlam::end_frame() {
   }
   images_.keep_view(data_.image_usable, progress, data_.median_depth);
   upkeep_.anchors().follow(tracking_.map_id(), data_.filter_ns);
+  followed_.note(&frame_.correction);
   return tracking_.conclude(progress, settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 
@@ -228,6 +235,7 @@ void FilterSlam::begin_new_map(const char* why) {
 }
 
 void FilterSlam::clear_estimate() {
+  frame_.correction = MapCorrection();
   start_.start_over();
   map_.features.clear();
   motion_.init();

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "filter/filter.h"
 #include "filter_slam/features/observation_front_end.h"
+#include "filter_slam/followed_camera.h"
 #include "filter_slam/image_tracking.h"
 #include "filter_slam/map_upkeep.h"
 #include "filter_slam/pose/pixel_update.h"
@@ -105,6 +106,7 @@ class FilterSlam {
   ObservationFrontEnd observations_;
   FilterStart start_;
   UnitKeeper unit_;
+  FollowedCamera followed_{filter_};
   Data data_;
 };
 

@@ -101,6 +101,8 @@ ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlatio
   told.correlation = correlation_frames;
   MovingSolution solution;
   if (!parts_->moving.note(told, moving_points(), &solution)) return ScaleChange::kNone;
+  frame_.correction.add(Similarity::about(Vec3::Zero(), solution.scale));
+  frame_.correction.rename(tracking_.map_id());
   metric_.use_motion(solution);
   return ScaleChange::kRescaled;
 }

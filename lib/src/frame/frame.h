@@ -5,9 +5,10 @@
 #include "base/arena.h"
 #include "base/eigen.h"
 #include "base/elapsed.h"
+#include "geometry/similarity.h"
 #include "model/state.h"
 
-/// Results of the current frame: its report and its matches, as the caller reads them.
+/// Results of the current frame: its report, its correction of the map and its matches, as the caller reads them.
 
 namespace pf {
 
@@ -66,9 +67,22 @@ struct FrameReport {
   std::int64_t stage_ns[kStageCount] = {};
 };
 
+/// How far poses that were given out before have moved in a frame, about the camera: what was at p is at T.of(p), what had the rotation R
+/// has T.q R.
+struct MapCorrection {
+  Similarity T;
+  std::uint32_t from_map_id =
+      0;  ///< of the map that they were given out in, where it goes on under another id; 0: it does not
+
+  void add(const Similarity& more) { T = more.after(T); }
+  /// The map goes on under another id than this one.
+  void rename(std::uint32_t before) { from_map_id = from_map_id != 0 ? from_map_id : before; }
+};
+
 class Frame {
  public:
   FrameReport report;
+  MapCorrection correction;
 
   /// Notes the inliers of a pose about which the frame was searched; the largest count stays in the report.
   void note_consensus(int inliers) { report.consensus = inliers > report.consensus ? inliers : report.consensus; }
@@ -80,13 +94,15 @@ class Frame {
   }
   void init() {
     report = FrameReport();
+    correction = MapCorrection();
     count_ = 0;
   }
-  /// Begins the next frame: an empty report with its time and its number, and no matches.
+  /// Begins the next frame: an empty report with its time and its number, no correction and no matches.
   void begin(std::int64_t t_ns) {
     const int frames = report.frames;
     const int duplicates = report.duplicates, repairs = report.repairs;
     report = FrameReport();
+    correction = MapCorrection();
     report.t_ns = t_ns;
     report.frames = frames;
     report.duplicates = duplicates;
@@ -95,10 +111,12 @@ class Frame {
     count_ = 0;
   }
 
-  /// Begins the same frame once more: as begin() left it, but keeps the times of its stages.
+  /// Begins the same frame once more: as begin() left it, but keeps the times of its stages, and how the map has moved.
   void begin_again() {
     const FrameReport before = report;
+    const MapCorrection moved = correction;
     begin(before.t_ns);
+    correction = moved;
     report.frames = before.frames;
     for (int i = 0; i < kStageCount; ++i) report.stage_ns[i] = before.stage_ns[i];
   }

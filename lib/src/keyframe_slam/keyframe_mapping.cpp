@@ -45,15 +45,19 @@ bool KeyframeMapping::wants_keyframe(bool young, Scalar median_depth) const {
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }
 
-/// As a keyframe. In a map that began elsewhere, where the pose is against its places, one that is near comes back.
+/// As a keyframe. As far as the adjustment moves it, so have the poses that were given out just before. In a map that began elsewhere,
+/// where the pose is against its places, one that is near comes back.
 void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   record_.note_keyframe();
   const int leaving = leaving_keyframe(map_, settings_.window_keyframes);
   if (leaving >= 0) keeper_.keep(leaving);
+  const CameraView before = motion_.view();
   const int keyframe = add_keyframe(frame_, motion_.view(), settings_.window_keyframes, &map_);
   map_.keyframes[keyframe].matches_by_motion = !young;
   if (young) triangulate_inliers(young);
   adjust();
+  const CameraView now = motion_.view();
+  frame_.correction.add(Similarity::between(before.q_WC, before.c_W, now.q_WC, now.c_W));
   if (map_.keyframes.began_elsewhere()) keeper_.bring_near(motion_.view(), median_depth, 1);
 }
 

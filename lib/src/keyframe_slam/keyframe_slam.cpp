@@ -145,6 +145,8 @@ void KeyframeSlam::measure() {
     unit_.begin_map();
     placement_.keep_anchors(before, motion_.view());
     mapping_.adjust();
+    const CameraView now = motion_.view();
+    frame_.correction.add(Similarity::between(before.q_WC, before.c_W, now.q_WC, now.c_W));
   }
 }
 
@@ -206,6 +208,7 @@ Status KeyframeSlam::end_frame() {
 
 /// Clears the map, and all that refers to poses in it.
 void KeyframeSlam::discard_map() {
+  frame_.correction = MapCorrection();
   start_.start_over();
   motion_.init();
   relocaliser_.init();

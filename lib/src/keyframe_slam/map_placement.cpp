@@ -97,6 +97,7 @@ void MapPlacement::rename_map() {
   if (tracking_.state() == SlamState::kStarting) return;
   const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
+  frame_.correction.rename(before);
   map_.tables().anchors.move(before, tracking_.map_id(), Similarity());
 }
 
@@ -140,6 +141,7 @@ void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
   map_.keyframes.set_began_elsewhere();
   map_.places.join(join.map_id);
   tracking_.rename_map(join.map_id);
+  frame_.correction.rename(before);
   map_.tables().anchors.move(before, join.map_id, Similarity());
   settings_.hooks.say("map ", before, " is recognised in map ", join.map_id, " and joined to it, scaled by ",
                       fixed(join.T.s, 3));
@@ -147,6 +149,7 @@ void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
 
 void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
   move_window(T, &map_, &planes_, &motion_);
+  frame_.correction.add(T);
   mapping_.adjustment().move(T);
   map_.tables().anchors.move(tracking_.map_id(), tracking_.map_id(), T);
   relocaliser_.move(T);

@@ -25,7 +25,7 @@ struct MarkedPose {
 /// Moves everything that is in the coordinates of the map.
 class MapPlacement {
  public:
-  MapPlacement(const Settings& settings, KeyframeMap& map, const Frame& frame, TrackingState& tracking,
+  MapPlacement(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
                KeyframeMotion& motion, KeyframePlanes& planes, KeyframeAnchors& anchors, KeyframeMapping& mapping,
                KeyframeRelocaliser& relocaliser, KeyframeRecord& record, KeyframeStart& start, KeyframeUnit& unit,
                SecondPose& second)
@@ -98,7 +98,7 @@ class MapPlacement {
 
   const Settings& settings_;
   KeyframeMap& map_;
-  const Frame& frame_;
+  Frame& frame_;
   TrackingState& tracking_;
   KeyframeMotion& motion_;
   KeyframePlanes& planes_;

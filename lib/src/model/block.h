@@ -89,7 +89,9 @@ struct Block {
   std::int16_t parent = -1;  ///< slot of the block that its coordinates are in: an anchor, plane or point group
   std::int16_t second_parent = -1;  ///< slot of another block that its place depends on
   std::int16_t children = 0;        ///< blocks that have this one as a parent
-  std::int16_t owner = -1;  ///< entry of the map's table that this block belongs to; orders the children of a parent
+  /// Entry of the map's table that this block belongs to; orders the children of a parent. Of a copy of the camera, which has neither: a
+  /// number by which it differs from others that have had its slot.
+  std::int16_t owner = -1;
   std::int16_t first_child = -1;     ///< slots, by ascending owner; of equal owners the one that came first
   std::int16_t next_sibling = -1;    ///< in the list of its parent
   std::int16_t next_of_second = -1;  ///< in the list of its second parent

@@ -163,6 +163,8 @@ Scalar FilterStart::look_for_walls() {
   data_.knows_scale = true;
   const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
+  frame_.correction.add(Similarity::about(first_W, scale));
+  frame_.correction.rename(before);
   map_.anchors.move(before, tracking_.map_id(), Similarity::about(first_W, scale));
   settings_.hooks.say("walls of the plan come into view: map ", before, " is scaled by ", fixed(scale, 3),
                       " and goes on as map ", tracking_.map_id(), " in metres");
@@ -183,6 +185,7 @@ bool FilterStart::begin_anew_at_rest(std::int64_t begin_ns) {
   if (map_.planes.has_known() || !(pending || !moved_before || is_young())) return false;
   mounting_.keep();
   recorder_.init();
+  frame_.correction = MapCorrection();
   if (moved_before) {
     if (!pending) tracking_.begin_map();
     beginning_.forget_known();  // it was the pose of the first frame

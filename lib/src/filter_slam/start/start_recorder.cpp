@@ -41,7 +41,7 @@ bool StartRecorder::record_frame(bool has_image) {
     case StartOutcome::kSettled:
       if (checks) return check_depths(outcome == StartOutcome::kSettled);
       if (first) record_.log(outcome, settings_.hooks);
-      restart(Scalar(1));
+      first ? restart(Scalar(1)) : restart_known(Scalar(1));
       break;
     case StartOutcome::kTooFew:
       if (first && !checks) begin_anew(has_image);  // only rotation so far, or too few features in view
@@ -81,7 +81,7 @@ bool StartRecorder::check_depths(bool settled) {
     settings_.hooks.say("first depths rejected by a record of ", record_.record().frames() + 1,
                         " frames: the map begins again ", by_walls ? "at the first pose" : "at the target",
                         " with depths of the record");
-    restart(unit);
+    restart_known(unit);
   }
   if (agree || settled) init();
   // Its points lie on walls of the plan. Until now the filter could not distinguish them from points before the walls.

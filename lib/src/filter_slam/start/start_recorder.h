@@ -67,6 +67,7 @@ class StartRecorder {
   void begin_anew(bool has_image);
   void stay_at_base();
   void restart(Scalar unit);
+  void restart_known(Scalar unit);
   template <typename Rho>
   void restart_features(Rho&& rho_of, Scalar relative_sigma);
   int add_recorded(int anchor, int index, Scalar rho, Scalar relative_sigma);

@@ -5,6 +5,7 @@
 #include "filter_slam/start/tuning.h"
 #include "frame/start/tuning.h"
 #include "frame/tuning.h"
+#include "model/camera_at.h"
 
 /// StartRecorder: what the filter takes from the record, and how it begins again from it.
 
@@ -40,6 +41,14 @@ void StartRecorder::restart(Scalar unit) {
     filter_.open_scale(kSigma * kSigma, beginning_.known().body.p_W);
   }
   if (progress().checking) update_with_target();
+}
+
+/// The same where poses have been given out that were by known depths. By how much this frame's pose moves, so have they.
+void StartRecorder::restart_known(Scalar unit) {
+  const CameraAt before = camera_at(filter_.state(), Scalar(0));
+  restart(unit);
+  const CameraAt now = camera_at(filter_.state(), Scalar(0));
+  frame_.correction.add(Similarity::between(before.q_WC, before.p_W, now.q_WC, now.p_W));
 }
 
 /// As long as depths are open, no pixel's linearisation constrains the baseline (Filter::parallax_noise). Its variance would grow with the

@@ -26,6 +26,8 @@ void carry_report(Archive& archive, FrameReport& report) {
 
 void Frame::carry(Archive& archive, const FeatureTable& features) {
   carry_report(archive, report);
+  archive.numbers(correction.T.q, correction.T.t, correction.T.s);
+  archive.any(correction.from_map_id);
   archive.within(count_, 0, capacity_);
   for (int i = 0; i < count_; ++i) {
     auto& [feature, id, status, kind, searched, predicted, innovation, measured, nis] = match_[i];
