@@ -120,7 +120,7 @@ void test_update_should_be_schmidts_when_only_motion_is_estimated() {
     Scene scene(random, false);
     const Dense before = scene.filter.P();
     const int moving = scene.filter->state().layout.dynamic_rows(), others = scene.filter.dim() - moving;
-    check_update(scene, nullptr, true, {true, false, {}});
+    check_update(scene, nullptr, true, {true, false});
     TEST_ASSERT_TRUE(
         difference(scene.filter.P().bottomRightCorner(others, others), before.bottomRightCorner(others, others)) == 0);
     for (PixelMeasurement& o : scene.observations) {
@@ -140,7 +140,7 @@ void test_update_should_be_schmidts_when_only_the_map_is_estimated() {
     Scene scene(random, false);
     const Dense before = scene.filter.P();
     const int body = scene.filter->state().layout.rows();
-    check_update(scene, nullptr, true, {false, true, {}});
+    check_update(scene, nullptr, true, {false, true});
     TEST_ASSERT_SAME(0, difference(scene.filter.P().topLeftCorner(body, body), before.topLeftCorner(body, body)));
   }
 }
@@ -169,7 +169,7 @@ void test_update_should_change_nothing_when_neither_motion_nor_map_is_estimated(
     const Vec3 p_W = scene.filter->state().body.p_W;
     scene.filter->begin_update(scene.observations.data(), scene.count());
     TEST_ASSERT_TRUE(
-        scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr, {false, false, {}}));
+        scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr, {false, false}));
     TEST_ASSERT_TRUE(difference(scene.filter.P(), before) < kExact);
     TEST_ASSERT_TRUE(scene.filter->state().body.p_W == p_W);
   }
@@ -194,7 +194,7 @@ void test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_i
     const Dense before = scene.filter.gauge();
     scene.filter->begin_update(scene.observations.data(), scene.count());
     TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr,
-                                                 {!only_map, !only_motion, {}}));
+                                                 {!only_map, !only_motion}));
     const Dense after = scene.filter.gauge();
     const Dense now = after.transpose() * inverse_of(scene.filter.P()) * after;
     const Dense should = before.transpose() * inverse_of(expected.P) * before;

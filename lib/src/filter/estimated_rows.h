@@ -18,7 +18,7 @@ struct PartlyConsidered {
 struct EstimatedRows {
   bool motion = true;  ///< the moving parts of the body
   bool map = true;
-  PartlyConsidered partly;  ///< of the map
+  PartlyConsidered partly = PartlyConsidered();  ///< of the map
 };
 
 }  // namespace pf
