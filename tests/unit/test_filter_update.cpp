@@ -10,13 +10,15 @@ void tearDown(void) {}
 namespace {
 
 /// What the textbook makes of the kept observations: dx = K y and (I - K H) P (I - K H)^T + K R K^T. Only the first `estimated` rows of K
-/// are used, where that is not 0 (Schmidt), or those behind the first `considered`.
+/// are used, where that is not 0 (Schmidt), or those behind the first `considered`. Rows of `partly` are those of an update by the
+/// observations that estimate them.
 struct Textbook {
   Eigen::VectorXd dx;
   Dense P;
   double nis;
 
-  Textbook(const Scene& scene, const unsigned char* keep, int estimated = 0, int considered = 0) {
+  Textbook(const Scene& scene, const unsigned char* keep, int estimated = 0, int considered = 0,
+           const PartlyConsidered& partly = PartlyConsidered()) {
     const int n = scene.filter.dim();
     std::vector<int> taken;
     for (int i = 0; i < scene.count(); ++i)
@@ -33,6 +35,17 @@ struct Textbook {
     const Dense before = scene.filter.P();
     const Dense S_inverse = inverse_of(H * before * H.transpose() + R);
     Dense K = before * H.transpose() * S_inverse;
+    for (int k = 0; k < partly.count; ++k) {
+      std::vector<int> of;
+      for (int r = 0; r < m; ++r)
+        if (partly.estimates[taken[static_cast<std::size_t>(r / 2)]] != 0) of.push_back(r);
+      const Dense H_of = H(of, Eigen::all), R_of = R(of, of);
+      const Dense K_of = before * H_of.transpose() * inverse_of(H_of * before * H_of.transpose() + R_of);
+      const int first = scene.filter.first(partly.block[k]), size = (*scene.filter).state().block[partly.block[k]].size;
+      K.middleRows(first, size).setZero();
+      for (std::size_t r = 0; r < of.size(); ++r)
+        K.block(first, of[r], size, 1) = K_of.block(first, static_cast<int>(r), size, 1);
+    }
     if (estimated > 0) K.bottomRows(n - estimated).setZero();
     K.topRows(considered).setZero();
     const Dense A = Dense::Identity(n, n) - K * H;
@@ -70,7 +83,8 @@ void check_state(const State& before, const TestFilter& filter, const std::vecto
 void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance,
                   EstimatedRows rows = EstimatedRows()) {
   const BodyLayout& layout = scene.filter->state().layout;
-  const Textbook expected(scene, keep, rows.map ? 0 : layout.dynamic_rows(), rows.motion ? 0 : layout.rows());
+  const Textbook expected(scene, keep, rows.map ? 0 : layout.dynamic_rows(), rows.motion ? 0 : layout.rows(),
+                          rows.partly);
   const State before = scene.filter->state();
   const std::vector<Block> blocks(before.block, before.block + before.slots);
   scene.filter->begin_update(scene.observations.data(), scene.count());
@@ -128,6 +142,22 @@ void test_update_should_be_schmidts_when_only_the_map_is_estimated() {
     const int body = scene.filter->state().layout.rows();
     check_update(scene, nullptr, true, {false, true});
     TEST_ASSERT_SAME(0, difference(scene.filter.P().topLeftCorner(body, body), before.topLeftCorner(body, body)));
+  }
+}
+
+void test_blocks_should_be_estimated_by_some_measurements_alone_when_the_others_consider_them() {
+  SeededRandom random(90);
+  for (int trial = 0; trial < 30; ++trial) {
+    Scene scene(random, false);
+    const int count = scene.count(), first = trial % count, last = (first + 1 + trial % (count - 1)) % count;
+    const int blocks[2] = {scene.observations[static_cast<std::size_t>(first)].block,
+                           scene.observations[static_cast<std::size_t>(last)].block};
+    unsigned char keep[16], estimates[16];
+    for (int i = 0; i < count; ++i) {
+      keep[i] = i == first || random.uniform(0, 1) < 0.8 ? 1 : 0;
+      estimates[i] = trial % 5 > 0 && random.uniform(0, 1) < 0.5 ? 1 : 0;  // none in each fifth trial
+    }
+    check_update(scene, keep, true, {trial % 3 > 0, true, {blocks, 1 + trial % 2, estimates}});
   }
 }
 
@@ -241,6 +271,7 @@ int main(void) {
   RUN_TEST(test_update_should_be_the_textbook_ekf_of_what_is_kept_when_some_is_rejected);
   RUN_TEST(test_update_should_be_schmidts_when_only_motion_is_estimated);
   RUN_TEST(test_update_should_be_schmidts_when_only_the_map_is_estimated);
+  RUN_TEST(test_blocks_should_be_estimated_by_some_measurements_alone_when_the_others_consider_them);
   RUN_TEST(test_update_should_change_nothing_when_neither_motion_nor_map_is_estimated);
   RUN_TEST(test_update_should_move_the_mean_like_the_textbook_when_the_gauge_is_kept);
   RUN_TEST(test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_is_kept);

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "covariance/kernels.h"
+#include "filter/estimated_rows.h"
 #include "filter/measurement.h"
 
 namespace pf {
@@ -156,9 +157,10 @@ class BlockFilter {
   /// Scratch of i + 1 numbers above the diagonal of S, 0 <= i < max_rows - 1: the caller's between project() and gain().
   Scalar* scratch_row(int i) { return S_ + (max_rows_ - 2 - i) * lds_ + (max_rows_ - 1 - i); }
   /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for the rows that are considered, which at least
-  /// held() are. Null when S + R cannot be factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
+  /// held() are. Null when S + R cannot be factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r. What `partly`
+  /// names stays valid until downdate().
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, const RowRange& considered,
-                     Scalar* nis);
+                     const PartlyConsidered& partly, Scalar* nis);
   /// dx of the last gain.
   const Scalar* step() const { return dx_; }
   /// Moves the last gain's step to another estimate, which differs by e in the leading rows.
@@ -174,7 +176,7 @@ class BlockFilter {
   int gained_rows() const { return gained_; }
   /// Rows that the last gain considers.
   const RowRange& gain_considers() const { return gain_considers_; }
-  /// P -= W^T W, then P += U^T G + G^T U (both rows x ld()).
+  /// P -= W^T W without what is considered, then P += U^T G + G^T U (both rows x ld()).
   void downdate(const Scalar* U, const Scalar* G, int rows);
 
   /// out = J P for Jacobians one below the other (leading dimension ld()).
@@ -196,6 +198,10 @@ class BlockFilter {
   struct Located;  ///< rows as the kernels read them
 
   void locate(const Rows& J, Located* out) const;
+  int put_estimating_first(const Measurement* z, int count, const unsigned char* keep);
+  void swap_gained(int a, int b);
+  void step_partly();
+  void return_partly();
   void dense_begin(int rows);
   void dense_add(const Rows& J);
   void dense_square(const Rows& J, Scalar* Q) const;
@@ -217,6 +223,8 @@ class BlockFilter {
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
   RowRange gain_considers_;
+  PartlyConsidered partly_;
+  int estimating_ = 0;   ///< first rows of the gain that estimate what is partly considered
   Scalar owed_ = 0;      ///< accumulated growth, too small for a Scalar
   Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
   Scalar* S_ = nullptr;  ///< max_rows x lds

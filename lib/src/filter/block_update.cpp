@@ -81,7 +81,7 @@ Mat2 BlockFilter::innovation2(int i, int j) const {
 }
 
 const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned char* keep, const RowRange& considered,
-                                Scalar* nis) {
+                                const PartlyConsidered& partly, Scalar* nis) {
   // Close the gaps that rejected measurements leave in H P and S, and add the noise.
   int m = 0;
   for (int i = 0; i < count; ++i) {
@@ -103,6 +103,8 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
   }
   gained_ = m;
   gain_considers_ = considered;
+  partly_ = partly;
+  estimating_ = partly.count > 0 ? put_estimating_first(z, count, keep) : m;
   if (m == 0 || !kernels_->cholesky(S_, m, lds_)) return nullptr;
   kernels_->solve_lower(S_, m, lds_, W_, P_.n, ld_);
   Scalar sum = 0;
@@ -115,12 +117,14 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
   if (!(sum < kMaxNis)) return nullptr;
   *nis = sum;
   kernels_->combine(W_, m, P_.n, ld_, y_, dx_);
+  if (estimating_ < m) step_partly();
   for (int i = considered.begin; i < considered.end; ++i) dx_[i] = Scalar(0);
   return dx_;
 }
 
 void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
   kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, gain_considers_.begin, gain_considers_.end);
+  if (estimating_ < gained_) return_partly();
 }
 
 /// What the downdate took of a variance is w^T w, w its column of L^-1 H P.

@@ -25,7 +25,7 @@ RowRange Filter::considered(EstimatedRows rows) const {
 
 bool Filter::solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis, EstimatedRows rows) {
   Scalar sum;
-  const Scalar* dx = blocks_.gain(z, count, keep, considered(rows), &sum);
+  const Scalar* dx = blocks_.gain(z, count, keep, considered(rows), rows.partly, &sum);
   if (dx == nullptr) return false;
   if (nis != nullptr) *nis = sum;
   return is_step(dx);

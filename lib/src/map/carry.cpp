@@ -16,14 +16,14 @@ void FeatureTable::carry(Archive& archive, int slots) {
   int count = 0;
   for (int i = 0; i < capacity_; ++i) {
     auto& [last_seen_ns, id, external_id, slot, observations, attempts, log_odds, residuals, rejections, is_target,
-           has_appearance, on_trial, was_missed] = feature_[i];
+           has_appearance, began_by_wall, on_trial, was_missed] = feature_[i];
     archive.within(slot, -1, slots - 1);
     if (slot < 0) continue;
     ++count;
     archive.any(last_seen_ns, id, external_id, rejections);
     archive.counts(observations, attempts, residuals.frame);
     archive.numbers(log_odds, residuals.mean);
-    archive.flags(is_target, has_appearance, on_trial, was_missed);
+    archive.flags(is_target, has_appearance, began_by_wall, on_trial, was_missed);
     archive.require(id != 0 && (!is_target || external_id < kMaxTargetPoints));
   }
   if (archive.is_reading()) count_ = count;

@@ -31,8 +31,9 @@ struct Feature {
   std::uint8_t rejections = 0;  ///< matches that were outliers, since it was last an inlier; up to 255
   bool is_target = false;
   bool has_appearance = false;
-  bool on_trial = false;    ///< began on a plane that its own parallax does not confirm yet
-  bool was_missed = false;  ///< no inlier when it was last searched for
+  bool began_by_wall = false;  ///< at the distance of a wall of the plan, which it may stand before
+  bool on_trial = false;       ///< began on a plane that its own parallax does not confirm yet
+  bool was_missed = false;     ///< no inlier when it was last searched for
 };
 
 class FeatureTable {

@@ -159,7 +159,8 @@ Scalar FeatureKeeper::median_inverse_depth() const {
   return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
-/// A point begins at the wall that its ray meets, by the plan; that does not reduce the wall's covariance.
+/// A point begins at the wall that its ray meets, by the plan; that does not reduce the wall's covariance. Nor do its pixels until it lies
+/// on the wall (PixelUpdate): it may stand before it.
 int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
@@ -172,12 +173,15 @@ int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   if (wall >= 0)
     slot = filter_.add_before_plane(anchor, map_.planes[wall].slot, ray_C, J_ray_pixel, noise,
                                     tuning::plane_walls::kOffWall, tau);
+  const bool began_by_wall = slot >= 0;
   if (slot < 0) {
     const Scalar rho = median_inverse_depth();
     slot = filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho,
                                      settings_.inverse_depth_relative_sigma * rho, tau);
   }
-  return slot < 0 ? -1 : add_entry(slot);
+  const int entry = slot < 0 ? -1 : add_entry(slot);
+  if (entry >= 0) map_.features[entry].began_by_wall = began_by_wall;
+  return entry;
 }
 
 int FeatureKeeper::plane_at(const Vec2& pixel) const {

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "base/limits.h"
+#include "base/table_entries.h"
 #include "filter_slam/pose/consensus.h"
 #include "filter_slam/pose/tuning.h"
 #include "geometry/so3.h"
@@ -24,7 +26,7 @@ bool PixelUpdate::layout(Arena& arena, int max_observations) {
   candidate_ = arena.take<Candidate>(count);
   observation_ = arena.take<PixelMeasurement>(count);
   keep_ = arena.take<unsigned char>(2 * count);
-  age_ = keep_ != nullptr ? keep_ + count : nullptr;
+  scratch_ = keep_ != nullptr ? keep_ + count : nullptr;
   others_.layout(arena, max_observations);
   return arena.ok();
 }
@@ -38,11 +40,32 @@ int PixelUpdate::reject_contradicted(int first, int count, JointFit* fit) {
   *fit = JointFit();
   for (int i = 0; i < count; ++i) {
     const Feature& feature = map_.features[candidate_[first + i].feature];
-    age_[i] = static_cast<unsigned char>(feature.is_target ? kOldest : std::min(feature.observations, kOldest));
+    scratch_[i] = static_cast<unsigned char>(feature.is_target ? kOldest : std::min(feature.observations, kOldest));
   }
   others_.reject(filter_, observation_ + first, count, tuning::pixel_update::kOthersGate * settings_.gate,
-                 {age_, settings_.min_inliers}, keep_ + first, fit);
+                 {scratch_, settings_.min_inliers}, keep_ + first, fit);
   return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
+}
+
+/// A point that began at a wall is correlated with it, but may stand before it. Until it is folded into a plane its pixels tell the camera
+/// and its own depth, and the walls are considered: all points before a wall would move it the same way.
+///
+/// walls: kMaxPlanes slots
+PartlyConsidered PixelUpdate::undecided_walls(int first, int count, int* walls) {
+  PartlyConsidered partly;
+  int undecided = 0;
+  for (int i = 0; i < count; ++i) {
+    const Feature& feature = map_.features[candidate_[first + i].feature];
+    const bool tells = !feature.began_by_wall || is_planar(filter_.state().block[feature.slot].kind);
+    scratch_[i] = tells ? 1 : 0;
+    undecided += tells ? 0 : 1;
+  }
+  if (undecided == 0) return partly;
+  for (const int k : used_entries(map_.planes))
+    if (map_.planes[k].known && map_.planes[k].counts()) walls[partly.count++] = map_.planes[k].slot;
+  partly.block = walls;
+  partly.estimates = scratch_;
+  return partly;
 }
 
 /// Of most of the kept ones, in metres.
@@ -74,14 +97,15 @@ UpdateOutcome PixelUpdate::apply(int first, int count, const UpdateMode& mode, c
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   UpdateOutcome now = before;
   bool depths_only = mode.depths_first && !before.is_pose_open && are_depths_open(first, count);
-  EstimatedRows rows = {mode.rows.motion && !depths_only, mode.rows.map};
+  int walls[kMaxPlanes];
+  EstimatedRows rows = {mode.rows.motion && !depths_only, mode.rows.map, undecided_walls(first, count, walls)};
   Scalar sum = 0, pose_nis = 0, of_rotation = 0;
   bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum, rows);
   const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis, &of_rotation);
   if (says_pose && depths_only && pose_nis > kMaxFirstNis) {
     now.is_pose_open = true;
     depths_only = false;
-    rows = mode.rows;
+    rows.motion = mode.rows.motion;
     filter_.begin_update(observation_ + first, count);
     solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum, rows);
   }
