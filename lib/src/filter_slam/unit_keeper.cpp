@@ -144,18 +144,7 @@ bool UnitKeeper::reads_force() const {
 
 UnitReason UnitKeeper::reason(Scalar* value, Mat3* R_CB) const {
   if (parts_ == nullptr) return UnitReason::kNone;
-  const UnitReason of_watch = watch_.reason(value, R_CB);
-  if (of_watch > UnitReason::kContradicts) return of_watch;
-  Scalar read = 0;
-  const UnitReason of_force = parts_->forces.reason(&read);
-  if (of_force != UnitReason::kNone) {
-    *value = read;
-    return of_force;
-  }
-  if (parts_->moving.is_reversed() && !filter_.is_metric()) return UnitReason::kAccelSign;
-  if (of_watch != UnitReason::kNone || filter_.is_metric() || !tracking_.has_pose()) return of_watch;
-  *value = parts_->moving.sigma_scale();
-  return UnitReason::kWaitsForMotion;
+  return reason_of(watch_, parts_->forces, parts_->moving, {filter_.is_metric(), tracking_.has_pose()}, value, R_CB);
 }
 
 void UnitKeeper::let_samples_begin() {

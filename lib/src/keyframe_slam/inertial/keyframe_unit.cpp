@@ -311,19 +311,7 @@ bool KeyframeUnit::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* bo
 }
 
 UnitReason KeyframeUnit::reason(Scalar* value, Mat3* R_CB) const {
-  const UnitReason of_watch = parts_->watch.reason(value, R_CB);
-  if (of_watch > UnitReason::kContradicts) return of_watch;
-  Scalar read = 0;
-  const UnitReason of_force = parts_->forces.reason(&read);
-  if (of_force != UnitReason::kNone) {
-    *value = read;
-    return of_force;
-  }
-  if (!has_begun()) return of_watch;
-  if (parts_->moving.is_reversed() && !is_metric()) return UnitReason::kAccelSign;
-  if (of_watch != UnitReason::kNone || is_metric()) return of_watch;
-  *value = parts_->moving.sigma_scale();
-  return UnitReason::kWaitsForMotion;
+  return reason_of(parts_->watch, parts_->forces, parts_->moving, {is_metric(), has_begun()}, value, R_CB);
 }
 
 }  // namespace pf
