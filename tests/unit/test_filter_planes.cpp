@@ -252,7 +252,17 @@ void test_conditioning_should_be_the_dense_update_with_distances_of_zero() {
     H.block(i, scene.filter.first(slot), 1, 3) = J_p.cast<double>();
   }
   const Dense P = scene.filter.P();
-  const Dense S = H * P * H.transpose() + 0.002 * 0.002 * Dense::Identity(m, m);
+  Dense R = 0.002 * 0.002 * Dense::Identity(m, m);
+  for (int i = 0; i < m; ++i) {  // and what is neglected: the slant's error times the place's along the plane
+    const int at = scene.filter.first(scene.on_wall[static_cast<std::size_t>(i)]);
+    const Dense C = P.block(at, at, 3, 3) + P.block(3, 3, 3, 3) - P.block(at, 3, 3, 3) - P.block(3, at, 3, 3);
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector3d along = state.frame_of(plane).R_WP.col(k).cast<double>();
+      const int slant = scene.filter.first(scene.plane) + k;
+      R(i, i) += P(slant, slant) * along.dot(C * along);
+    }
+  }
+  const Dense S = H * P * H.transpose() + R;
   const Dense K = P * H.transpose() * inverse_of(S);
   const Dense after = P - K * H * P;
   const Eigen::VectorXd dx = K * y;

@@ -1,5 +1,7 @@
 // Features that began on a plane because their corner lies in its outline: what makes them believed, and what makes them go.
 #include "filter_slam/planes/plane_trials.h"
+
+#include "belief/plane_membership.h"
 #include "same.h"
 #include "support/plane_keeper_bench.h"
 
@@ -95,20 +97,20 @@ void test_feature_should_be_believed_when_it_is_hardly_off_the_plane() {
 
 void test_log_odds_should_say_nothing_when_there_is_no_parallax() {
   for (const Scalar s : {Scalar(0), Scalar(0.3)}) {
-    TEST_ASSERT_TRUE(std::abs(log_odds_of_depth(s, Scalar(25), Scalar(0.01), Scalar(0.5))) < Scalar(0.1));
+    TEST_ASSERT_TRUE(std::abs(log_odds_on_plane(s, Scalar(25), Scalar(0.01), Scalar(0.5))) < Scalar(0.1));
   }
 }
 
 void test_log_odds_should_grow_with_what_is_known_of_the_depth() {
   Scalar before = 0;
   for (const Scalar sigma : {Scalar(0.3), Scalar(0.1), Scalar(0.03), Scalar(0.01)}) {
-    const Scalar odds = log_odds_of_depth(Scalar(0), sigma * sigma, Scalar(0.002), Scalar(0.5));
+    const Scalar odds = log_odds_on_plane(Scalar(0), sigma * sigma, Scalar(0.002), Scalar(0.5));
     TEST_ASSERT_TRUE(odds > before);
-    TEST_ASSERT_TRUE(log_odds_of_depth(6 * sigma, sigma * sigma, Scalar(0.002), Scalar(0.5)) < odds);
+    TEST_ASSERT_TRUE(log_odds_on_plane(6 * sigma, sigma * sigma, Scalar(0.002), Scalar(0.5)) < odds);
     before = odds;
   }
   TEST_ASSERT_TRUE(before > Scalar(3));
-  TEST_ASSERT_TRUE(log_odds_of_depth(Scalar(0.06), Scalar(1e-4), Scalar(0.002), Scalar(0.5)) < Scalar(-10));
+  TEST_ASSERT_TRUE(log_odds_on_plane(Scalar(0.06), Scalar(1e-4), Scalar(0.002), Scalar(0.5)) < Scalar(-10));
 }
 
 void test_outliers_of_a_plane_should_count_features_that_began_on_it_and_are_elsewhere() {
@@ -123,10 +125,12 @@ void test_outliers_of_a_plane_should_count_features_that_began_on_it_and_are_els
   TEST_ASSERT_EQUAL_INT(1, other.map.planes[plane].outliers);
 }
 
-/// A point of the map that lies on the plane, as certain as the plane is: folded in the next frame or not.
-bool is_folded(bool was_missed, int rejections) {
+/// A point of the map that lies on the plane, as certain as the plane is or so much: folded in the next frame or not.
+bool is_folded(bool was_missed, int rejections, Scalar sigma = Scalar(1e-3), bool is_found = false) {
   Bench bench;
-  const int slot = bench.filter->add_point(Vec3(Scalar(0.3), Scalar(0.2), kDepth), Mat3::Identity() * Scalar(1e-6));
+  if (is_found) bench.map.planes[0].known = false;
+  const int slot =
+      bench.filter->add_point(Vec3(Scalar(0.3), Scalar(0.2), kDepth), Mat3(Mat3::Identity() * sigma * sigma));
   const int entry = bench.map.features.add(slot);
   TEST_ASSERT_TRUE(slot >= 0 && entry >= 0);
   bench.filter->set_owner(slot, entry);
@@ -144,6 +148,13 @@ void test_point_should_be_folded_when_it_was_missed_but_not_when_it_was_found_el
   TEST_ASSERT_FALSE(is_folded(true, 1));
 }
 
+/// Two metres away it is a member where half a metre of depth could have shown it elsewhere a hundred times.
+void test_point_should_be_folded_into_a_found_plane_when_its_depth_would_have_shown_it_elsewhere() {
+  TEST_ASSERT_TRUE(is_folded(false, 0, Scalar(0.002), true));
+  TEST_ASSERT_TRUE(is_folded(false, 0, Scalar(0.005), true));
+  TEST_ASSERT_FALSE(is_folded(false, 0, Scalar(0.02), true));
+}
+
 }  // namespace
 
 int main(void) {
@@ -156,5 +167,6 @@ int main(void) {
   RUN_TEST(test_log_odds_should_grow_with_what_is_known_of_the_depth);
   RUN_TEST(test_outliers_of_a_plane_should_count_features_that_began_on_it_and_are_elsewhere);
   RUN_TEST(test_point_should_be_folded_when_it_was_missed_but_not_when_it_was_found_elsewhere);
+  RUN_TEST(test_point_should_be_folded_into_a_found_plane_when_its_depth_would_have_shown_it_elsewhere);
   return UNITY_END();
 }

@@ -2,7 +2,7 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of the belief in the pose, each with the probability that it stands for. tools/sweep-tuning halves and doubles them;
+/// Tuned numbers of what is believed, each with the probability that it stands for. tools/sweep-tuning halves and doubles them;
 /// what no sweep has measured has no figure here.
 
 namespace pf::tuning {
@@ -27,6 +27,11 @@ namespace feature_belief {
 inline constexpr Scalar kMost = Scalar(6.9);   ///< that a feature can have: none once in a thousand
 inline constexpr Scalar kNone = Scalar(-4.6);  ///< below which it is none: wrong in 1 %
 }  // namespace feature_belief
+
+/// Log-odds that a feature lies on a plane (plane_membership.h).
+namespace plane_membership {
+inline constexpr Scalar kSure = Scalar(4.6);  ///< from which on it is a member: ln 100
+}  // namespace plane_membership
 
 /// Log-odds that the lens has changed (lens_belief.h).
 namespace lens_belief {

@@ -279,6 +279,7 @@ class Filter {
   void translate(const Vec3& t);
   // planes.cpp
   void place_plane(int slot, const PlaneFrame& frame, Scalar roughness);
+  Scalar bend_of_distance(int plane, int slot, const ScaleRow& l) const;
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
   void predict_distance(int plane, const struct Place& at, DistanceMeasurement* out) const;
   // point_groups.cpp

@@ -88,6 +88,16 @@ Scalar Filter::plane_variance(int plane, const Vec3& p_W) const {
   return variance_of(J);
 }
 
+/// What a distance neglects as it is linear in the plane's slant (a, b) and in the place (u, v) of a point along the plane: a u + b v.
+Scalar Filter::bend_of_distance(int plane, int slot, const ScaleRow& l) const {
+  if (state_.block[slot].kind != BlockKind::kPoint) return Scalar(0);
+  const Mat3& R_WP = state_.frame_of(state_.block[plane]).R_WP;
+  const Mat3 C = relative_covariance(slot, l);
+  Scalar sum = 0;
+  for (int k = 0; k < 2; ++k) sum += block_variance(plane, k) * R_WP.col(k).dot(C * R_WP.col(k));
+  return sum;
+}
+
 void Filter::begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z) {
   PF_ASSERT(count <= kMaxFolded);
   // The distance scales with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
@@ -104,7 +114,7 @@ void Filter::begin_distances(int plane, const int* slots, int count, Scalar nois
       for (int k = 0; k < l.part[p].size; ++k) h[k] = -d * l.h[from++];
       add_part(&z[i].H, l.part[p], h);
     }
-    z[i].set_noise(DistanceMeasurement::Matrix::Constant(noise));
+    z[i].set_noise(DistanceMeasurement::Matrix::Constant(noise + bend_of_distance(plane, slots[i], l)));
     view[i] = z[i].view();
   }
   begin_update(view, count);

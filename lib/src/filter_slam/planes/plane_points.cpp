@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "belief/plane_membership.h"
+#include "belief/tuning.h"
 #include "filter_slam/features/wall_rays.h"
 #include "frame/plane_settings.h"
 #include "frame/tuning.h"
@@ -64,10 +66,12 @@ bool lies_on(const Settings& settings, const Filter& filter, const Map& map, int
   const int entry = map.planes.entry_at(plane);
   const FoldRule rule = entry < 0 ? settings.fold : fold_rule(settings, map.planes[entry]);
   const Scalar range = (filter.point(slot) - filter.state().body.p_W).norm();
+  if (entry < 0 || !map.planes[entry].known)
+    return log_odds_on_plane(d, variance, rule.roughness, settings.inverse_depth_relative_sigma * range) >
+           tuning::plane_membership::kSure;
   const Scalar most = distance_at(settings, range), limit = most * most;
   const Scalar noise = rule.roughness * rule.roughness;
-  const Scalar near = entry >= 0 && map.planes[entry].known ? limit + noise : limit;
-  return d * d <= near * Scalar(4) && variance <= limit && d * d < rule.gate * (variance + noise);
+  return d * d <= (limit + noise) * Scalar(4) && variance <= limit && d * d < rule.gate * (variance + noise);
 }
 
 }  // namespace pf

@@ -33,8 +33,8 @@ bool is_before_wall(const Filter& filter, const Map& map, int plane_entry, const
 /// from the plane's origin instead, since it has no variance for the distance of far points; here there is one.
 bool is_in_reach(const Settings& settings, const Filter& filter, const Map& map, int plane_entry, const Vec3& p_W);
 
-/// Whether a point is near the plane (block), its distance is known, and it passes the gate of folding. A passed gate means little if the
-/// variance of the distance is large, so that is bounded by distance_at its range.
+/// Whether a point lies on the plane (block), by the filter's own covariance of its distance (belief/plane_membership.h). Before a wall of
+/// the plan, of which it is known that it is there: whether it passes the gate of folding, at a distance that is known to distance_at.
 bool lies_on(const Settings& settings, const Filter& filter, const Map& map, int plane, int slot);
 
 }  // namespace pf

@@ -28,7 +28,6 @@ int PlaneRevision::list_places(int plane, const Vec3& n_W, JudgedPoint* points, 
   const Scalar limit = kMaxSigma * settings_.plane_distance;
   int count = 0;
   state.for_each_planar(plane, [&](int slot) {
-    if (map_.features[state.block[slot].owner].on_trial) return;
     JudgedPoint* p = points + count;
     if (count == kMaxJudged || !places_.find(state.block[slot].owner, n_W, &p->p_W, &p->variance)) return;
     p->variance *= kPixel * kPixel;
@@ -74,6 +73,7 @@ void PlaneRevision::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3
   if (!filter_.unfold_along(slot, height / slant, sigma)) return;
   Feature& f = map_.features[state.block[slot].owner];
   f.rejections = 0;
+  f.on_trial = false;
   f.observations = 1;  // has to converge again before it may be folded
   ++map_.planes[plane_entry].outliers;
 }

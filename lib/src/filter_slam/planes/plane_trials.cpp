@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/table_entries.h"
+#include "belief/plane_membership.h"
+#include "belief/tuning.h"
 #include "filter_slam/planes/plane_points.h"
 #include "filter_slam/planes/tuning.h"
 #include "frame/tuning.h"
@@ -11,11 +13,6 @@
 namespace pf {
 
 using namespace tuning::plane_trials;
-
-Scalar log_odds_of_depth(Scalar s, Scalar v, Scalar t, Scalar w) {
-  const Scalar on = v + t * t, somewhere = v + w * w;
-  return Scalar(0.5) * (std::log(somewhere / on) - s * s * (1 / on - 1 / somewhere));
-}
 
 Scalar PlaneTrials::log_odds(int entry, int plane_entry) const {
   Scalar s, v;
@@ -32,7 +29,7 @@ Scalar PlaneTrials::log_odds(int entry, int plane_entry) const {
   const Scalar of_plane = std::min(filter_.plane_variance(plane, filter_.point(map_.features[entry].slot)), limit);
   const Scalar roughness = settings_.fold.roughness;
   const Scalar t = std::sqrt(of_plane + roughness * roughness) / slant;
-  return log_odds_of_depth(s, v * kPixel * kPixel, t, settings_.inverse_depth_relative_sigma * range);
+  return log_odds_on_plane(s, v * kPixel * kPixel, t, settings_.inverse_depth_relative_sigma * range);
 }
 
 void PlaneTrials::judge() {
@@ -45,7 +42,7 @@ void PlaneTrials::judge() {
     if (elsewhere) ++map_.planes[entry].outliers;
     if (f.rejections >= tuning::plane_keeper::kTrialRejections || elsewhere) {
       features_.drop(&i, 1);
-    } else if (!f.was_missed && odds > kSure) {
+    } else if (!f.was_missed && odds > tuning::plane_membership::kSure) {
       f.on_trial = false;
       if (map_.planes[entry].outliers > 0) map_.planes[entry].outliers = map_.planes[entry].outliers - 1;
       support(filter_, map_, entry, f.slot);

@@ -10,14 +10,6 @@
 
 namespace pf {
 
-/// ln p(s | on the plane) / p(s | somewhere along the ray), of what a feature's own pixels say of its depth (own_places.h):
-///
-///   on the plane   s ~ N(0, v + t²)       v  variance of s;  t  sigma of the plane's own place along the ray, with its roughness
-///   somewhere      s ~ N(0, v + w²)       w  sigma of a depth of which nothing is known
-///
-/// Without parallax v is large against both, and the two explain s equally well: 0.
-Scalar log_odds_of_depth(Scalar s, Scalar v, Scalar t, Scalar w);
-
 /// Judges features that began on planes: believes those whose own parallax shows that they lie there, and drops those that it shows
 /// elsewhere, or that were found elsewhere kTrialRejections times in a row. Their pixels are then free for a feature of open depth.
 /// What is elsewhere counts as an outlier of the plane; what is believed takes one of these back.

@@ -21,7 +21,6 @@ inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from ther
 /// Features that began on a plane.
 namespace plane_trials {
 inline constexpr Scalar kPixel = 1;           ///< [px] of a match, with what it has in common with other frames'
-inline constexpr Scalar kSure = Scalar(4.6);  ///< log-odds from which on a feature is believed: ln 100
 inline constexpr Scalar kDoubt = Scalar(1);   ///< log-odds against it from which on it goes, since it bends the plane
 inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
 }  // namespace plane_trials
