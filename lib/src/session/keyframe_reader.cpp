@@ -104,6 +104,37 @@ MapCounts KeyframeReader::counts() const {
   return counts;
 }
 
+/// The newest keyframe in which a point on the plane began; -1: none is on it.
+int KeyframeReader::newest_host_on(int i) const {
+  const KeyframeMap& map = slam_.map();
+  int newest = -1;
+  for (const int p : used_entries(map)) {
+    const KeyframePoint& point = map.point(p);
+    if (!point.has_depth || point.plane != i) continue;
+    if (newest < 0 || map.keyframes[point.host].number > map.keyframes[newest].number) newest = point.host;
+  }
+  return newest;
+}
+
+/// What a keyframe may be off in W, (theta, p): its covariance when it was the newest.
+///
+///   alpha = y . theta,   beta = -x . theta,   delta = n . (p + theta x (o - p_K))        axes x, y, n and origin o of the plane
+Mat3 KeyframeReader::plane_with_keyframe(int i) const {
+  const KeyframeMap& map = slam_.map();
+  const PlaneFrame& frame = slam_.placement().planes().plane(i).frame;
+  const int k = newest_host_on(i);
+  if (k < 0) return Mat3::Zero();
+  const Keyframe& keyframe = map.keyframes[k];
+  const Vec3 n = frame.R_WP.col(2);
+  Eigen::Matrix<Scalar, 3, 6> J;
+  J.setZero();
+  J.row(0).head<3>() = frame.R_WP.col(1).transpose();
+  J.row(1).head<3>() = -frame.R_WP.col(0).transpose();
+  J.row(2).head<3>() = Vec3(frame.o_W - keyframe.p_W).cross(n).transpose();
+  J.row(2).tail<3>() = n.transpose();
+  return J.lazyProduct(keyframe.covariance).lazyProduct(J.transpose());
+}
+
 ///   (alpha, beta, delta) = (-a, -b, h)
 PlaneView KeyframeReader::plane(int i) const {
   const KeyframePlane& plane = slam_.placement().planes().plane(i);
@@ -121,6 +152,7 @@ PlaneView KeyframeReader::plane(int i) const {
   const Mat3 J = plane_error_jacobian();
   const Mat3 covariance = is_wall ? slam_.placement().walls().covariance(i) : plane.covariance;
   out.covariance = J.lazyProduct(covariance).lazyProduct(J.transpose());
+  if (!is_wall) out.covariance += plane_with_keyframe(i);
   out.outline = map_.planes[i].seen;
   return out;
 }

@@ -34,6 +34,9 @@ class KeyframeReader {
   bool surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const;
 
  private:
+  int newest_host_on(int i) const;
+  Mat3 plane_with_keyframe(int i) const;
+
   const Settings& settings_;
   const Map& map_;
   const KeyframeSlam& slam_;
