@@ -93,7 +93,7 @@ class Archive {
   }
   template <typename T>
   void flag(T& x) {
-    bool on = x;
+    bool on = is_reading() ? false : x;  // what is read into may hold anything yet
     within(on, 0, 1);
     if (is_reading()) x = on;
   }
