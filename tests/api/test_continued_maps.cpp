@@ -1,4 +1,5 @@
 // Saves of a context, to go on with: what is refused, by which name, and that nothing changes then.
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -157,6 +158,22 @@ void test_a_context_that_was_told_something_should_refuse() {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, fresh.load(map));
 }
 
+void test_what_was_rejected_should_have_told_nothing() {
+  const Bytes map = saved_to_continue(walked().slam);
+  Fresh fresh;
+  pf_slam_t* const slam = fresh.run.slam;
+  const double nan3[3] = {std::nan(""), 0, 0};
+  const pf_imu_sample_t sample = {0, {nan3[0], 0, 0}, {}};
+  std::uint32_t id = 0;
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_frame(slam, nullptr));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_start_from_pose(slam, nullptr, nullptr));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_wall(slam, nullptr, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_push_imu(slam, &sample, 1));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_set_gravity(slam, nan3));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_mark_pose(slam));
+  TEST_ASSERT_EQUAL_INT(PF_OK, fresh.load(map));
+}
+
 void test_a_small_buffer_should_stay_as_it_is() {
   std::size_t bytes = 0, used = 7;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_map_size(walked().slam, PF_MAP_CONTINUE, &bytes));
@@ -189,6 +206,7 @@ int main() {
     RUN_TEST(test_a_damaged_context_should_be_refused_and_change_nothing);
     RUN_TEST(test_forged_numbers_should_do_no_harm);
     RUN_TEST(test_a_context_that_was_told_something_should_refuse);
+    RUN_TEST(test_what_was_rejected_should_have_told_nothing);
     RUN_TEST(test_a_small_buffer_should_stay_as_it_is);
     RUN_TEST(test_a_context_without_frames_should_be_saved_too);
   }

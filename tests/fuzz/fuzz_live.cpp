@@ -16,7 +16,9 @@ constexpr std::size_t kOrigin = 32, kLive = kOrigin + 24 + 24, kHeader = 24;
 
 /// Squares of two depths before a camera that moves sideways.
 void draw(int frame, std::vector<uint8_t>* grey) {
-  const auto hash = [](int x, int y) { return static_cast<uint32_t>(x * 73856093 ^ y * 19349663) * 2654435761u >> 24; };
+  const auto hash = [](int x, int y) {
+    return (static_cast<uint32_t>(x) * 73856093u ^ static_cast<uint32_t>(y) * 19349663u) * 2654435761u >> 24;
+  };
   grey->resize(kWidth * kHeight);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -57,6 +59,7 @@ Context created(int which) {
   pf_memory_t need;
   require(pf_memory_query(&config, &need) == PF_OK, "a possible config");
   auto* const block = new Guarded(need.bytes, need.alignment, which / 2 % 2 == 0);  // for all inputs
+  std::memset(block->begin(), 0x7f, need.bytes);
   Context out = {};
   require(pf_create(&config, block->begin(), need.bytes, &out.slam) == PF_OK, "a context");
   for (int k = 0; k < kFrames; ++k) {

@@ -24,7 +24,9 @@ pf_slam_t* created(int32_t backend) {
   require(pf_memory_query(&config, &need) == PF_OK, "a possible config");
   void* block = std::aligned_alloc(need.alignment, (need.bytes + need.alignment - 1) / need.alignment * need.alignment);
   pf_slam_t* slam = nullptr;
-  require(block != nullptr && pf_create(&config, block, need.bytes, &slam) == PF_OK, "a context");
+  require(block != nullptr, "memory");
+  std::memset(block, 0x7f, need.bytes);
+  require(pf_create(&config, block, need.bytes, &slam) == PF_OK, "a context");
   return slam;
 }
 

@@ -6,11 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/arena.h"
 #include "bytes.h"
-
-#if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/asan_interface.h>
-#endif
 
 constexpr size_t kPage = 4096;
 
@@ -27,7 +24,7 @@ class Guarded {
   Guarded(const Guarded&) = delete;
   Guarded& operator=(const Guarded&) = delete;
   ~Guarded() {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(PF_HAS_RED_ZONES)
     ASAN_UNPOISON_MEMORY_REGION(map_, all_);  // the next mapping may be at this address
 #endif
     munmap(map_, all_);

@@ -168,6 +168,18 @@ static void test_a_reset_from_inside_the_log_should_be_refused(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
 }
 
+/* A reset says that rows have no time of their own: a caller that answers by a reset must not be asked again. */
+static void test_a_reset_from_inside_the_log_of_a_reset_should_be_refused(void) {
+  config.camera.readout_s = 0.01;
+  config.camera.timestamps = PF_TIMESTAMPS_NOMINAL;
+  config.log = reset_from_inside;
+  refused_calls = 0;
+  again();
+  TEST_ASSERT_EQUAL_INT(1, refused_calls);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
+  TEST_ASSERT_EQUAL_INT(2, refused_calls);
+}
+
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_same_id_twice_in_a_call_should_count_once);
@@ -178,5 +190,6 @@ int main(void) {
   RUN_TEST(test_starts_that_no_camera_can_be_in_should_be_refused);
   RUN_TEST(test_target_should_be_refused_when_it_does_not_fit_or_the_door_cannot_show_it);
   RUN_TEST(test_a_reset_from_inside_the_log_should_be_refused);
+  RUN_TEST(test_a_reset_from_inside_the_log_of_a_reset_should_be_refused);
   return UNITY_END();
 }

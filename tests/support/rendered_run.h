@@ -115,6 +115,7 @@ class RenderedRun {
     std::free(block_);
     block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
     TEST_ASSERT_NOT_NULL(block_);
+    std::memset(block_, 0x7f, need.bytes);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam));
   }
 

@@ -78,7 +78,7 @@ class TestArena {
   TestArena(const TestArena&) = delete;
   TestArena& operator=(const TestArena&) = delete;
   ~TestArena() {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(PF_HAS_RED_ZONES)
     ASAN_UNPOISON_MEMORY_REGION(block_.data(), block_.size());
 #endif
   }

@@ -28,6 +28,7 @@ class WallWalk {
     pf_memory_t need;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config_, &need));
     block_.reset(std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment));
+    std::memset(block_.get(), 0x7f, need.bytes);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config_, block_.get(), need.bytes, &slam));
     start();
   }

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "base/arena.h"
 #include "base/scalar.h"
 #include "unity.h"
 
@@ -70,6 +71,13 @@ void read_past_the_end() {
   std::free(bytes);
 }
 
+void write_into_a_red_zone() {
+  alignas(pf::Arena::kAlignment) static unsigned char block[1024];
+  pf::Arena arena(block, sizeof block);
+  volatile unsigned char* const piece = arena.take<unsigned char>(1);
+  piece[pf::Arena::kAlignment] = 1;
+}
+
 void overflow_an_int() {
   volatile int largest = INT_MAX;
   volatile int sum = largest + 1;
@@ -94,6 +102,10 @@ void test_address_sanitizer_should_stop_a_bad_read_when_the_preset_asks_for_it()
   const bool wanted = preset() == "asan-ubsan";
   TEST_ASSERT_EQUAL_INT(wanted, asan_is_compiled_in());
   if (wanted) TEST_ASSERT_TRUE(child_is_stopped(read_past_the_end));
+}
+
+void test_an_arena_should_have_red_zones_under_the_address_sanitizer_of_any_compiler() {
+  TEST_ASSERT_EQUAL_INT(asan_is_compiled_in(), child_is_stopped(write_into_a_red_zone));
 }
 
 void test_undefined_sanitizer_should_stop_an_overflow_when_the_preset_asks_for_it() {
@@ -132,6 +144,7 @@ void test_assertions_should_be_off_when_the_preset_is_for_release() {
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_address_sanitizer_should_stop_a_bad_read_when_the_preset_asks_for_it);
+  RUN_TEST(test_an_arena_should_have_red_zones_under_the_address_sanitizer_of_any_compiler);
   RUN_TEST(test_undefined_sanitizer_should_stop_an_overflow_when_the_preset_asks_for_it);
   RUN_TEST(test_thread_sanitizer_should_report_a_race_when_the_preset_asks_for_it);
   RUN_TEST(test_coverage_should_be_counted_when_the_preset_asks_for_it);

@@ -1,6 +1,6 @@
 """Runs the fuzz targets of build/fuzz one after the other:  fuzz.py MINUTES [NAME]
 
-One line per target, then the line coverage of lib/src/api and lib/src/slam over all of them together. Exit status 1 where one of them
+One line per target, then the line coverage of each folder of lib/src over all of them together. Exit status 1 where one of them
 found something, whose input is kept in build/fuzz.
 """
 
@@ -12,7 +12,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "fuzz"
-FOLDERS = ["lib/src/api", "lib/src/slam"]
+FOLDERS = sorted(f"lib/src/{room.name}" for room in (ROOT / "lib" / "src").iterdir() if room.is_dir())
 # Targets that find what is known and not repaired yet. They run, what they find is kept and printed, and the run goes on.
 KNOWN = {}
 

@@ -222,7 +222,7 @@ typedef enum pf_masks {
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
   /* Keyframes that are adjusted with the points that they see (lib/docs/theory/window.md; Masoud
-   * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial or constant acceleration,
+   * 2015). PF_ERROR_CONFIG with motion.model constant acceleration, imu.sigma_readout_s above 0,
    * camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's
    * covariance takes the map's first keyframes as exact, those of points and planes all keyframes
    * and the lens. The block at its defaults is 2.4 MiB, with camera.estimate estimate 2.5. */

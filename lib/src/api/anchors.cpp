@@ -25,18 +25,18 @@ pf_status_t add(pf_slam_t* slam, const pf::AnchorRequest& asked, uint32_t* id) {
 }  // namespace
 
 pf_status_t pf_add_anchor_pose(pf_slam_t* slam, const pf_pose_t* pose, uint32_t* id) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (pose == nullptr || id == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(pose->q_WC, 4) || !pf::finite(pose->p_WC, 3)) return PF_ERROR_NONFINITE;
   pf::AnchorRequest asked;
   if (!pf::quaternion_from(pose->q_WC, &asked.T_WA.q) || !pf::within(pose->p_WC, 3, pf::kMaxMetres))
     return PF_ERROR_RANGE;
   asked.T_WA.p = pf::vec3(pose->p_WC);
-  return add(slam, asked, id);
+  return in_call.end(add(slam, asked, id));
 }
 
 pf_status_t pf_add_anchor_hit(pf_slam_t* slam, const pf_hit_t* hit, uint32_t* id) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (hit == nullptr || id == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(hit->p_W, 3)) return PF_ERROR_NONFINITE;
   if (!pf::within(hit->p_W, 3, pf::kMaxMetres)) return PF_ERROR_RANGE;
@@ -44,12 +44,12 @@ pf_status_t pf_add_anchor_hit(pf_slam_t* slam, const pf_hit_t* hit, uint32_t* id
   pf::AnchorRequest asked;
   asked.plane = planes.entry_of(planes.find(hit->plane));
   asked.T_WA.p = pf::vec3(hit->p_W);
-  return asked.plane < 0 ? PF_NOTE_NOTHING : add(slam, asked, id);
+  return in_call.end(asked.plane < 0 ? PF_NOTE_NOTHING : add(slam, asked, id));
 }
 
 pf_status_t pf_remove_anchor(pf_slam_t* slam, uint32_t id) {
-  PF_REQUIRE_CHANGEABLE(slam);
-  return pf::to_c(slam->session.map_calls().remove_anchor(id));
+  PF_BEGIN_CHANGE(slam);
+  return in_call.end(slam->session.map_calls().remove_anchor(id));
 }
 
 pf_status_t pf_get_anchor(const pf_slam_t* slam, uint32_t id, pf_anchor_t* anchor) {

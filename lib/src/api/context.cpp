@@ -45,7 +45,7 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
 }
 
 pf_status_t pf_reset(pf_slam_t* slam) {
-  PF_REQUIRE_IDLE(slam);
+  PF_BEGIN_CHANGE(slam);
   slam->session.init();
   slam->is_told = false;
   return PF_OK;

@@ -13,7 +13,7 @@ struct pf_slam {
   pf_config_t config;
   pf::Session session;
   bool is_told;  ///< something has changed it since pf_create or pf_reset
-  bool in_call;  ///< a frame is being processed: calls from its callbacks that change the context are rejected
+  bool in_call;  ///< a call that changes it has not returned: others of this kind, from its callbacks, are rejected
 };
 
 namespace pf {
@@ -41,6 +41,13 @@ class InCall {
   InCall(const InCall&) = delete;
   InCall& operator=(const InCall&) = delete;
 
+  /// What the call returns. A call that was rejected has told the context nothing.
+  pf_status_t end(pf_status_t status) const {
+    if (status >= PF_OK) slam_->is_told = true;
+    return status;
+  }
+  pf_status_t end(Status status) const { return end(to_c(status)); }
+
  private:
   pf_slam_t* slam_;
 };
@@ -54,14 +61,9 @@ class InCall {
     if (!pf::is_context(slam)) return PF_ERROR_CONTEXT; \
   } while (false)
 
-/// The same for a call that changes the context: also rejected from inside a callback of the same context.
-#define PF_REQUIRE_CHANGEABLE(slam) \
-  PF_REQUIRE_IDLE(slam);            \
-  (slam)->is_told = true
-
-/// The same for one that makes it new.
-#define PF_REQUIRE_IDLE(slam)                   \
-  PF_REQUIRE_CONTEXT(slam);                     \
-  do {                                          \
-    if ((slam)->in_call) return PF_ERROR_STATE; \
-  } while (false)
+/// The same for a call that changes the context: also rejected from inside a callback of the same context. Such a call returns errors as
+/// they are, and all else through in_call.end().
+#define PF_BEGIN_CHANGE(slam)                 \
+  PF_REQUIRE_CONTEXT(slam);                   \
+  if ((slam)->in_call) return PF_ERROR_STATE; \
+  const pf::InCall in_call(slam)

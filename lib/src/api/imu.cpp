@@ -22,7 +22,7 @@ void copy_rotation(const pf::Quat& q, double* out) {
 }  // namespace
 
 pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (samples == nullptr && count > 0) return PF_ERROR_NULL;
   const pf::ImuLog& imu = slam->session.imu();
   for (size_t i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t 
     }
     slam->session.push_imu(sample);
   }
-  return PF_OK;
+  return in_call.end(PF_OK);
 }
 
 pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {

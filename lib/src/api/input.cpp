@@ -41,7 +41,7 @@ pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
 }  // namespace
 
 pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (target == nullptr) return PF_ERROR_NULL;
   if (slam->session.view().used()) return PF_ERROR_STATE;
   if (!pf::finite(&target->sigma, 1)) return PF_ERROR_NONFINITE;
@@ -75,11 +75,11 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
   } else {
     return PF_ERROR_RANGE;
   }
-  return pf::to_c(slam->session.start_from_target(t));
+  return in_call.end(slam->session.start_from_target(t));
 }
 
 pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
   if (slam->session.view().used()) return PF_ERROR_STATE;
   pf::KnownBody known;
@@ -99,55 +99,55 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
       for (int j = 0; j < 6; ++j)
         known.covariance[(first + i) * dim + first + j] = static_cast<Scalar>(velocity_covariance[i * 6 + j]);
   }
-  return pf::to_c(slam->session.start_from_pose(known));
+  return in_call.end(slam->session.start_from_pose(known));
 }
 
 pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* pose) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
   pf::Body body;
   const pf_status_t status = body_from(*pose, &body);
   if (status != PF_OK) return status;
   const double* P = pose->covariance;
   const Scalar sigma = static_cast<Scalar>(std::sqrt(P[21] + P[28] + P[35]));
-  return pf::to_c(slam->session.set_second_pose(t_ns, body.p_W, sigma));
+  return in_call.end(slam->session.set_second_pose(t_ns, body.p_W, sigma));
 }
 
 pf_status_t pf_withdraw_target(pf_slam_t* slam) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   slam->session.withdraw_target();
-  return PF_OK;
+  return in_call.end(PF_OK);
 }
 
 pf_status_t pf_mark_pose(pf_slam_t* slam) {
-  PF_REQUIRE_CHANGEABLE(slam);
-  return pf::to_c(slam->session.mark_pose());
+  PF_BEGIN_CHANGE(slam);
+  return in_call.end(slam->session.mark_pose());
 }
 
 pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
   if (!within(dv_C, 3, kMaxMetres) || !within(dw_C, 3, kMaxRate)) return PF_ERROR_RANGE;
   if (!slam->session.takes_control()) return PF_ERROR_STATE;
   slam->session.push_control(vec3(dv_C), vec3(dw_C));
-  return PF_OK;
+  return in_call.end(PF_OK);
 }
 
 pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (image == nullptr || image->pixels == nullptr) return PF_ERROR_NULL;
   if (!slam->session.takes_images()) return PF_ERROR_STATE;
   const pf_camera_t& camera = slam->config.camera;
   if (image->width != camera.width || image->height != camera.height || image->stride < image->width)
     return PF_ERROR_SIZE;
   if (!pf::is_next_frame(slam->session.view().frame(), image->t_ns)) return PF_ERROR_TIME;
-  const pf::InCall in_call(slam);
-  return pf::to_c(slam->session.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
+  return in_call.end(
+      slam->session.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
 }
 
 pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations, size_t count) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (observations == nullptr && count > 0) return PF_ERROR_NULL;
   if (!slam->session.takes_observations()) return PF_ERROR_STATE;
   if (!pf::is_next_frame(slam->session.view().frame(), t_ns)) return PF_ERROR_TIME;
@@ -158,7 +158,6 @@ pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observa
     if (!(std::fabs(o.pixel[0]) < 1e5 && std::fabs(o.pixel[1]) < 1e5)) return PF_ERROR_RANGE;
   }
   if (slam->session.needs_images()) return PF_ERROR_STATE;
-  const pf::InCall in_call(slam);
   pf::PixelObservation* taken = slam->session.inbox();
   const size_t most = static_cast<size_t>(slam->session.inbox_size());
   const size_t n = count < most ? count : most;
@@ -168,5 +167,5 @@ pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observa
     taken[i].pixel = pf::Vec2(static_cast<Scalar>(o.pixel[0]), static_cast<Scalar>(o.pixel[1]));
     taken[i].sigma_px = o.sigma_px > 0.0 ? static_cast<Scalar>(o.sigma_px) : slam->session.settings().sigma_px;
   }
-  return pf::to_c(slam->session.push_observations(static_cast<int>(n), t_ns));
+  return in_call.end(slam->session.push_observations(static_cast<int>(n), t_ns));
 }

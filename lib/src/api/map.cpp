@@ -22,19 +22,12 @@ pf_status_t check_kind(const pf_slam_t* slam, int32_t kind) {
   return pf::kHasMemory && !slam->in_call ? PF_OK : PF_ERROR_STATE;
 }
 
-/// The log has what is wrong with a map.
-pf_status_t end_load(pf_slam_t* slam, pf::Status status, const char* wrong) {
-  if (wrong != nullptr) slam->session.settings().hooks.say("map rejected: ", wrong);
-  if (status == pf::Status::kOk) slam->is_told = true;
-  return pf::to_c(status);
-}
-
-pf_status_t go_on(pf_slam_t* slam, const std::uint8_t* buffer, std::size_t bytes) {
-  if (!pf::kHasMemory || slam->is_told) return PF_ERROR_STATE;
+pf::Status go_on(pf_slam_t* slam, const std::uint8_t* buffer, std::size_t bytes, const char** wrong) {
+  if (!pf::kHasMemory || slam->is_told) return pf::Status::kState;
   bool is_changed = false;
-  const char* const wrong = read_live(origin_of(*slam), buffer, bytes, &slam->session, &is_changed);
-  if (wrong != nullptr && is_changed) slam->session.init();
-  return end_load(slam, wrong != nullptr ? pf::Status::kMap : pf::Status::kOk, wrong);
+  *wrong = read_live(origin_of(*slam), buffer, bytes, &slam->session, &is_changed);
+  if (*wrong != nullptr && is_changed) slam->session.init();
+  return *wrong != nullptr ? pf::Status::kMap : pf::Status::kOk;
 }
 
 }  // namespace
@@ -64,13 +57,15 @@ pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer, size_
 }
 
 pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes) {
-  PF_REQUIRE_IDLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (buffer == nullptr) return PF_ERROR_NULL;
   const std::uint8_t* const map = static_cast<const std::uint8_t*>(buffer);
-  if (pf::map_kind(map, bytes) == pf::kContinuedMap) return go_on(slam, map, bytes);
   const char* wrong = nullptr;
   pf::Vec3 gravity_W = pf::Vec3::Zero();
-  const pf::Status status = slam->session.map_calls().load(map, bytes, &wrong, &gravity_W);
+  const pf::Status status = pf::map_kind(map, bytes) == pf::kContinuedMap
+                                ? go_on(slam, map, bytes, &wrong)
+                                : slam->session.map_calls().load(map, bytes, &wrong, &gravity_W);
+  if (wrong != nullptr) slam->session.settings().hooks.say("map rejected: ", wrong);
   if (status == pf::Status::kOk && gravity_W.squaredNorm() > pf::Scalar(0)) slam->session.set_gravity(gravity_W);
-  return end_load(slam, status, wrong);
+  return in_call.end(status);
 }

@@ -57,7 +57,7 @@ pf_status_t check(const pf_mask_t& mask, const pf_camera_t& camera) {
 }  // namespace
 
 pf_status_t pf_set_mask(pf_slam_t* slam, const pf_mask_t* mask) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (mask == nullptr) return PF_ERROR_NULL;
   ImageMask* const kept = slam->session.settings().mask.mask;
   if (kept == nullptr) return PF_ERROR_FULL;
@@ -68,6 +68,6 @@ pf_status_t pf_set_mask(pf_slam_t* slam, const pf_mask_t* mask) {
   for (int i = 0; i < kept->cells() && !has_scene; ++i) has_scene = !masks(*mask, kept->cell(i));
   if (!has_scene) return PF_ERROR_RANGE;
   kept->assign([mask](const Rect& cell) { return masks(*mask, cell); });
-  return count_usable(*kept, camera.width, camera.height) < pf::tuning::tracking::kMinInliers ? PF_NOTE_UNUSABLE
-                                                                                              : PF_OK;
+  const int usable = count_usable(*kept, camera.width, camera.height);
+  return in_call.end(usable < pf::tuning::tracking::kMinInliers ? PF_NOTE_UNUSABLE : PF_OK);
 }

@@ -72,22 +72,22 @@ pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_
 }
 
 pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (gravity_W == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(gravity_W, 3)) return PF_ERROR_NONFINITE;
   for (int i = 0; i < 3; ++i)
     if (!(std::fabs(gravity_W[i]) < 1e6)) return PF_ERROR_RANGE;
   slam->session.set_gravity(
       Vec3(static_cast<Scalar>(gravity_W[0]), static_cast<Scalar>(gravity_W[1]), static_cast<Scalar>(gravity_W[2])));
-  return PF_OK;
+  return in_call.end(PF_OK);
 }
 
 pf_status_t pf_set_plane_vertical(pf_slam_t* slam, uint32_t plane, double sigma_rad) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (!pf::finite(&sigma_rad, 1)) return PF_ERROR_NONFINITE;
   constexpr double kMinSigma = 1e-6, kMaxSigma = 0.5;
   if (sigma_rad != 0 && !(sigma_rad >= kMinSigma && sigma_rad <= kMaxSigma)) return PF_ERROR_RANGE;
-  return pf::to_c(slam->session.set_plane_vertical(plane, static_cast<Scalar>(sigma_rad)));
+  return in_call.end(slam->session.set_plane_vertical(plane, static_cast<Scalar>(sigma_rad)));
 }
 
 pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit) {

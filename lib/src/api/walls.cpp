@@ -70,7 +70,7 @@ pf_status_t prior_from(const pf_wall_prior_t& prior, pf::PlanePrior* out) {
 }  // namespace
 
 pf_status_t pf_add_wall(pf_slam_t* slam, const pf_wall_prior_t* prior, uint32_t* id) {
-  PF_REQUIRE_CHANGEABLE(slam);
+  PF_BEGIN_CHANGE(slam);
   if (prior == nullptr || id == nullptr) return PF_ERROR_NULL;
   pf::PlanePrior wall;
   const pf_status_t status = prior_from(*prior, &wall);
@@ -78,5 +78,5 @@ pf_status_t pf_add_wall(pf_slam_t* slam, const pf_wall_prior_t* prior, uint32_t*
   std::uint32_t added = 0;
   const pf::Status done = slam->session.add_wall(wall, &added);
   if (done == pf::Status::kOk) *id = added;
-  return pf::to_c(done);
+  return in_call.end(done);
 }

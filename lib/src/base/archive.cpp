@@ -42,7 +42,7 @@ std::int64_t Archive::integer(std::int64_t value, int size, std::int64_t least, 
                            : size == 2 ? integer_as<std::int16_t, std::uint16_t>(value, is_signed)
                                        : integer_as<std::int8_t, std::uint8_t>(value, is_signed);
   require(now >= least && now <= most);
-  return failed_ ? value : now;
+  return failed_ ? least : now;
 }
 
 }  // namespace pf

@@ -20,7 +20,8 @@ namespace pf {
 ///   flags     0 or 1
 ///   any       integers that may have every value, such as ids and times
 ///
-/// After the first that is wrong nothing more is read, and failed() is true. What numbers mean to each other is for their owners to check.
+/// After the first that is wrong nothing more is read, and failed() is true. Counts, indices and switches then get the least of their
+/// domain, so that their owners, who check what they mean to each other, never follow what memory held before.
 class Archive {
  public:
   static constexpr double kMaxNumber = 1e19;
@@ -93,7 +94,7 @@ class Archive {
   }
   template <typename T>
   void flag(T& x) {
-    bool on = x;
+    bool on = is_reading() ? false : x;  // what is read into may hold anything yet
     within(on, 0, 1);
     if (is_reading()) x = on;
   }

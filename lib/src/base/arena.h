@@ -7,6 +7,13 @@
 #include "base/assert.h"
 
 #if defined(__SANITIZE_ADDRESS__)
+#define PF_HAS_RED_ZONES 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define PF_HAS_RED_ZONES 1
+#endif
+#endif
+#if defined(PF_HAS_RED_ZONES)
 #include <sanitizer/asan_interface.h>
 #endif
 
@@ -34,7 +41,7 @@ class Arena {
     const std::size_t zone = used_;
     used_ += kZone;
     if (block_ == nullptr || used_ > capacity_) return nullptr;
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(PF_HAS_RED_ZONES)
     ASAN_UNPOISON_MEMORY_REGION(block_ + begin, bytes);
     ASAN_POISON_MEMORY_REGION(block_ + zone, kZone);
 #else
@@ -62,7 +69,7 @@ class Arena {
   bool ok() const { return block_ != nullptr && used_ <= capacity_; }
 
  private:
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(PF_HAS_RED_ZONES)
   static constexpr std::size_t kZone = 64;
 #else
   static constexpr std::size_t kZone = 0;

@@ -45,7 +45,7 @@ void PlaceSearch::carry(Archive& archive) {
     archive.numbers(pixel);
     for (int l = 0; l < kLevels; ++l) {
       archive.flags(has_level[l]);
-      archive.any(descriptor[l].word);
+      if (has_level[l]) archive.any(descriptor[l].word);
     }
   }
 }

@@ -31,7 +31,7 @@ void carry(Archive& archive, PlanarTemplate& shape, int max_side) {
   archive.numbers(sigma_plane, sigma_other, area, slope, covariance);
 }
 
-/// No more pixels are chosen than what aligns them has room for.
+/// Behind its side squared it holds nothing. No more pixels are chosen than what aligns them has room for.
 void carry(Archive& archive, PlanePatch& patch, int max_side) {
   auto& [left, top, side, levels, mean, pixels, chosen] = patch;
   archive.within(left, 0, kMaxImageSide);
@@ -39,8 +39,9 @@ void carry(Archive& archive, PlanePatch& patch, int max_side) {
   archive.within(side, PlanePatch::kMinSide, max_side);
   archive.within(levels, 1, PlanePatch::kLevels);
   archive.numbers(mean);
-  archive.bytes(pixels, sizeof pixels);
-  archive.bytes(chosen, sizeof chosen);
+  if (archive.failed()) return;
+  archive.bytes(pixels, static_cast<std::size_t>(patch.level(levels) - pixels));
+  archive.bytes(chosen, static_cast<std::size_t>(side * side + 7) / 8);
   if (!archive.is_reading() || archive.failed()) return;
   int samples = 0;
   for (int y = 1; y < side - 1; ++y)

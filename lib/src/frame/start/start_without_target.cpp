@@ -16,6 +16,7 @@ bool StartWithoutTarget::layout(Arena& arena, int lens_rows) {
 void StartWithoutTarget::init() {
   data_ = Data();
   record_.init();
+  bundle_.init();
 }
 
 void StartWithoutTarget::begin_record(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns) {

@@ -34,10 +34,10 @@ void KeyframeWalls::init() {
   gauge_.init();
   random_ = 1;
   newest_compared_ = 0;
+  std::fill(compared_, compared_ + gauge_.capacity(), SmallCount());
   for (const int k : used_entries(table_)) {
     if (!table_[k].known) continue;
     planes_.add_wall(k, planes_.plane(k).plan);
-    compared_[k] = 0;
     gauge_.add(k, table_[k].prior_covariance());
   }
 }

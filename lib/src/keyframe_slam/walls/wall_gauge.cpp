@@ -62,6 +62,7 @@ void WallGauge::init() {
   has_begun_ = false;
   std::fill(P_, P_ + rows_ * rows_, 0.0);
   std::fill(g_, g_ + kMapRows, 0.0);
+  std::fill(wall_, wall_ + walls_, Vec3(Vec3::Zero()));
   std::fill(has_, has_ + walls_, false);
 }
 
