@@ -207,10 +207,8 @@ void ImuFeed::configure(pf_config_t& config) const {
     const double gravity = config.imu.gravity;
     config.imu = model_;
     config.imu.gravity = model_.gravity > 0.0 ? model_.gravity : gravity;
-    const bool may_try =
-        tries_readout_ && config.backend != PF_BACKEND_WINDOW;  // which takes the readout as it is given
     config.imu.sigma_readout_s =
-        may_try && !(config.camera.readout_s > 0.0) && !readout_given_ ? kUsualReadoutS : model_.sigma_readout_s;
+        tries_readout_ && !(config.camera.readout_s > 0.0) && !readout_given_ ? kUsualReadoutS : model_.sigma_readout_s;
   }
   config.capacity.max_imu_samples = inertial_ ? kKeptToMove : kKept;
   config.imu.gyro_range = imu_->gyro_range();

@@ -49,7 +49,7 @@ static void test_check_should_name_what_the_window_cannot_do(void) {
   use_samples();
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
   config.imu.sigma_readout_s = 0.01;
-  refuses("imu.sigma_readout_s");
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
   config.camera.estimate = PF_CAMERA_CONSIDER;
   refuses("camera.estimate");
   config.capacity.max_patches = 4;

@@ -1,4 +1,5 @@
 // Pixels of the window's camera whose rows are read out one after the other: where they lie, and their Jacobians.
+#include "bundle/row_column.h"
 #include "geometry/so3.h"
 #include "keyframe_slam/map/rows.h"
 #include "model/camera_at.h"
@@ -92,6 +93,59 @@ void test_pixel_should_stay_where_it_is_when_all_rows_are_read_out_at_once() {
   TEST_ASSERT_SAME(z, at_frame_time(test_camera_of(0), body, point_before(body, random), Scalar(1), z));
 }
 
+/// Of a pixel that is measured in its row, at the frame's time: the less readout, the nearer it is to where it was measured.
+void test_column_of_the_readout_should_be_exact() {
+  SeededRandom random(155);
+  for (int trial = 0; trial < 40; ++trial) {
+    Camera camera = rolling_camera(trial);
+    camera.readout = Scalar(0);
+    const Body body = random_moving_body(random);
+    const Vec3 p_W = point_before(body, random);
+    const Scalar rho = 1 / (p_W - body.p_W).norm();
+    const Vec3 m = rho * p_W;
+    Vec2 z;
+    Mat23 J;
+    const Mat3 R_CW = body.q_WC.toRotationMatrix().transpose();
+    const Vec3 d = rho * (p_W - body.p_W);
+    TEST_ASSERT_TRUE(project(camera, R_CW * d, &z, &J));
+    const ViewOfRows view = {R_CW, {body.v_W, body.w_C}, Scalar(0)};
+    const Vec2 column = readout_column(camera, view, z.y(), J * R_CW, d, rho);
+    using One = Eigen::Matrix<Scalar, 1, 1>;
+    check_jacobian<2, 1>(
+        Vec2(-column),
+        [&](const One& e) {
+          Camera rolling = camera;
+          rolling.readout = e(0);
+          return at_frame_time(rolling, body, m, rho, z);
+        },
+        "J_pixel_readout");
+    const Scalar bound = sizeof(Scalar) == sizeof(float) ? Scalar(0.05) : Scalar(1e-8);
+    TEST_ASSERT_TRUE((readout_column(camera, view, z, rho) - column).norm() < bound);
+  }
+}
+
+/// By a readout that is not zero the row is that of the pixel at its own time, and not that of the frame's.
+void test_column_should_be_that_of_the_row_in_which_the_pixel_was_read_out() {
+  SeededRandom random(156);
+  for (int trial = 0; trial < 40; ++trial) {
+    const Camera camera = rolling_camera(trial);
+    const Body body = random_moving_body(random);
+    const Vec3 p_W = point_before(body, random);
+    Vec2 measured;
+    if (!project_row(camera, body, p_W, Scalar(1), &measured)) continue;
+    const Vec2 z = at_frame_time(camera, body, p_W, Scalar(1), measured);
+    const Mat3 R_CW = body.q_WC.toRotationMatrix().transpose();
+    Vec2 still;
+    Mat23 J;
+    TEST_ASSERT_TRUE(project(camera, R_CW * (p_W - body.p_W), &still, &J));
+    const Vec2 column = readout_column(camera, {R_CW, {body.v_W, body.w_C}, Scalar(0)}, measured.y(), J * R_CW,
+                                       p_W - body.p_W, Scalar(1));
+    const ViewOfRows view = {R_CW, {body.v_W, body.w_C}, camera.readout};
+    const Vec2 found = readout_column(camera, view, z, 1 / (p_W - body.p_W).norm());
+    TEST_ASSERT_TRUE((found - column).norm() < Scalar(0.02) * column.norm() + Scalar(0.1));
+  }
+}
+
 }  // namespace
 
 int main(void) {
@@ -99,5 +153,7 @@ int main(void) {
   RUN_TEST(test_jacobian_by_pose_and_velocities_should_be_exact);
   RUN_TEST(test_pixel_should_be_what_its_own_row_sees);
   RUN_TEST(test_pixel_should_stay_where_it_is_when_all_rows_are_read_out_at_once);
+  RUN_TEST(test_column_of_the_readout_should_be_exact);
+  RUN_TEST(test_column_should_be_that_of_the_row_in_which_the_pixel_was_read_out);
   return UNITY_END();
 }

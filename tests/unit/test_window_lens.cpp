@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geometry/so3.h"
+#include "keyframe_slam/map/rows.h"
 #include "same.h"
 #include "support/window_bench.h"
 
@@ -124,6 +125,81 @@ void test_a_new_map_should_begin_at_the_calibration() {
   TEST_ASSERT_SAME(bench.settings.lens.covariance(4, 4), bench.map.lens().covariance()[24]);
 }
 
+/// Keyframes that move, and the pixels of a rolling shutter of which the calibration says nothing.
+struct RowsBench : KeyframeBench {
+  static constexpr double kReadout = 0.02, kSigma = 0.3;  // [s], [px]
+  Camera truth;
+  TestArena more;
+
+  explicit RowsBench(std::uint64_t seed) : KeyframeBench(seed) {
+    LensSigmas sigmas;
+    sigmas.readout = Scalar(0.015);
+    settings.lens = make_lens_prior(sigmas, &settings.camera);
+    TEST_ASSERT_TRUE(adjustment.layout(*more));
+    adjustment.init();
+    map.init();
+    for (int k = 0; k < kKeyframes; ++k) {
+      const Scalar s = static_cast<Scalar>(k);
+      map.keyframes.add(k, exp_so3(Vec3(Scalar(0.1) * std::sin(s), Scalar(0.05) * s, Scalar(0.2) * std::cos(s))),
+                        Vec3(Scalar(0.1) * s, Scalar(0.05) * std::sin(s), Scalar(0.03) * s));
+      map.keyframes[k].v_W = random.normals<3>(0.3);
+      map.keyframes[k].w_C = random.normals<3>(0.5);
+    }
+    truth = settings.camera;
+    truth.readout = Scalar(kReadout);
+  }
+  Body body(int k) const {
+    Body body;
+    body.q_WC = map.keyframes[k].q_WC;
+    body.p_W = map.keyframes[k].p_W;
+    body.v_W = map.keyframes[k].v_W;
+    body.w_C = map.keyframes[k].w_C;
+    return body;
+  }
+  void fill() {
+    for (int c = 0; c < kPoints; ++c) {
+      Vec3 ray;
+      TEST_ASSERT_TRUE(unproject(truth,
+                                 Vec2(static_cast<Scalar>(random.uniform(40, truth.width - 40)),
+                                      static_cast<Scalar>(random.uniform(40, truth.height - 40))),
+                                 &ray));
+      const Scalar depth = static_cast<Scalar>(random.uniform(1, 3));
+      const Vec3 p_W = map.keyframes[0].q_WC * ray * depth + map.keyframes[0].p_W;
+      Vec2 z;
+      if (!project_row(truth, body(0), p_W, Scalar(1), &z)) continue;
+      const int i = map.add(0, z);
+      TEST_ASSERT_TRUE(i >= 0);
+      map.point(i).rho = 1 / depth;
+      map.point(i).has_depth = true;
+      tables.features[i].observations = 20;
+      for (int k = 1; k < kKeyframes; ++k)
+        if (project_row(truth, body(k), p_W, Scalar(1), &z))
+          map.keyframes.set_pixel(k, i, z + random.normals<2>(kSigma));
+    }
+  }
+};
+
+void test_a_readout_that_the_calibration_lacks_should_be_found() {
+  constexpr int kRuns = 12;
+  double squares = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    RowsBench bench(static_cast<std::uint64_t>(40 + run));
+    bench.fill();
+    const double before = static_cast<double>(bench.map.keyframes.pixels(1)[3].y);
+    for (int again = 0; again < 3; ++again) TEST_ASSERT_TRUE(bench.adjustment.run(true));
+    const KeyframeLens& lens = bench.map.lens();
+    TEST_ASSERT_EQUAL_INT(1, lens.rows().count);
+    const double off = static_cast<double>(lens.camera().readout) - RowsBench::kReadout;
+    const double variance = static_cast<double>(lens.readout_variance());
+    TEST_ASSERT_TRUE(std::fabs(off) < 2e-3);
+    TEST_ASSERT_TRUE(variance < 1e-6);
+    TEST_ASSERT_TRUE(std::fabs(static_cast<double>(bench.map.keyframes.pixels(1)[3].y) - before) > 1e-3);
+    squares += off * off / variance / kRuns;
+  }
+  std::printf("readout: mean of squared errors in sigmas %.2f\n", squares);
+  TEST_ASSERT_TRUE(squares < 3);
+}
+
 }  // namespace
 
 int main() {
@@ -133,5 +209,6 @@ int main() {
   RUN_TEST(test_a_point_of_the_target_should_not_follow_the_lens);
   RUN_TEST(test_the_lens_should_stay_where_the_caller_does_not_want_it_adjusted);
   RUN_TEST(test_a_new_map_should_begin_at_the_calibration);
+  RUN_TEST(test_a_readout_that_the_calibration_lacks_should_be_found);
   return UNITY_END();
 }

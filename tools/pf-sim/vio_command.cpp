@@ -365,13 +365,6 @@ json of_fault(const Choices& c, const VioSummary* s) {
           {"refused_samples", refused}};
 }
 
-/// What the window has not of what is asked for; empty: nothing.
-std::string refused_by_window(const Choices& c) {
-  if (std::find(c.estimate.begin(), c.estimate.end(), "readout") != c.estimate.end())
-    return "it does not estimate the readout; leave --estimate readout away";
-  return "";
-}
-
 /// "" when all is well. Near what is told where --estimate says so, as told where --imu-exact does, and else as people know it.
 std::string choose_unit(Choices* c) {
   const auto has = [](const std::vector<std::string>& list, const char* what) {
@@ -420,8 +413,6 @@ std::string choose_unit(Choices* c) {
 
 int run(Choices c) {
   const VioOptions& o = c.vio;
-  const std::string refused = c.backend.is_window() ? refused_by_window(c) : "";
-  if (!refused.empty()) return fail("--backend window: " + refused);
   c.vio.window = c.backend.is_window();
   if (c.seeds < 1 || c.seeds > 10000) return fail("--seeds is 1 to 10000");
   if (c.jobs < 1) return fail("--jobs is 1 or more");

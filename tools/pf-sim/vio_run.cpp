@@ -78,7 +78,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   config.imu.sigma_mount_m = o.told_mount_m;
   config.imu.sigma_delay_s = o.told_delay_s;
   config.imu.sigma_scale = o.told_scale;
-  config.imu.sigma_readout_s = o.window ? 0 : o.sigma_readout_s;
+  config.imu.sigma_readout_s = o.sigma_readout_s;
   return config;
 }
 

@@ -259,7 +259,7 @@ typedef struct pf_imu_model {
    * push those of up to three sigma behind its time before it, as far as they have come. */
   double sigma_delay_s;
   /* Of camera.readout_s, which may be 0 then; up to 0.1. One more row of the lens, which is
-   * considered with PF_CAMERA_CONSIDER, and else estimated. It never falls below 0. Filter only. */
+   * considered with PF_CAMERA_CONSIDER, and else estimated. It never falls below 0. */
   double sigma_readout_s;
   /* Of the scales of both sensors and of the directions of their axes, relative, up to 0.05: what
    * data sheets call sensitivity and cross-axis errors, 0.01 for a phone. 15 rows of the state */

@@ -228,7 +228,6 @@ const char* motion_from(const pf_config_t& config, const pf_research_t& research
 const char* refused_by_window(const pf_config_t& config) {
   if (config.backend != PF_BACKEND_WINDOW) return nullptr;
   if (config.motion.model == PF_MOTION_CONSTANT_ACCELERATION) return "motion.model";
-  if (config.motion.model == PF_MOTION_INERTIAL && config.imu.sigma_readout_s > 0) return "imu.sigma_readout_s";
   if (config.camera.estimate == PF_CAMERA_CONSIDER) return "camera.estimate";
   if (config.plane.fix_sigma > 0) return "plane.fix_sigma";
   if (config.capacity.max_patches > 0) return "capacity.max_patches";

@@ -47,14 +47,24 @@ struct HostPixel {
   bool given;
 };
 
-/// Parameters of the lens that are adjusted, about a prior.
+/// Velocities of a camera at its frame's time, with which its rows were read out.
+struct BundleRates {
+  Vec3 v_W, w_C;
+};
+
+/// Parameters of the lens that are adjusted, about a prior. Where the readout is one of them, pixels are those of the frame's time by the
+/// readout that the camera begins with; by another one they are
+///
+///   z(readout) = z - (readout - readout_before) s dz/dt,   s: the row's part of the readout, -1/2 .. 1/2
 struct BundleLens {
   LensRows rows;
-  const Scalar* prior_information;  ///< rows x rows, row-major
-  Camera prior;                     ///< its mean
-  Camera* camera;                   ///< adjusted, in place of the camera that the calls below get
-  const HostPixel* host_pixel;      ///< of each point
-  Vec3* ray;                        ///< the bundle's; becomes the unit ray of the host's pixel where one is given
+  const Scalar* prior_information;     ///< rows x rows, row-major
+  Camera prior;                        ///< its mean
+  Camera* camera;                      ///< adjusted, in place of the camera that the calls below get
+  const HostPixel* host_pixel;         ///< of each point
+  Vec3* ray;                           ///< the bundle's; becomes the unit ray of the host's pixel where one is given
+  const BundleRates* rates = nullptr;  ///< of each pose; null: the readout is not adjusted
+  Scalar readout_before = 0;           ///< by which the pixels are at their frames' times
 };
 
 /// The distance of a free pose from a place. It holds the scale where no two fixed poses do; pixels are blind to it.

@@ -1,5 +1,6 @@
 #include "bundle/bundle_terms.h"
 #include "bundle/pose_rows.h"
+#include "bundle/row_column.h"
 #include "geometry/camera_distortion.h"
 
 /// The pixels of BundleTerms, where an adjustment spends most of its time.
@@ -46,9 +47,10 @@ struct PixelTerm {
   int point, free_pose, free_host;
   Vec2 r;
   Scalar weight;
-  Columns J_z_d;      ///< by the direction d in W
-  Pair J_rho;         ///< by the point's inverse depth
-  PoseRows J_C, J_H;  ///< by the pose and by the host, where they are free
+  Columns J_z_d;                   ///< by the direction d in W
+  Pair J_rho;                      ///< by the point's inverse depth
+  PoseRows J_C, J_H;               ///< by the pose and by the host, where they are free
+  Vec2 by_readout = Vec2::Zero();  ///< by the readout of the pose's rows
 };
 
 /// H, b and W of one pose.
@@ -79,8 +81,8 @@ inline void add_poses(const Vec3& d, const Vec3& ray_W, Scalar rho, PixelTerm* t
 }
 
 /// Blocks of the lens, and of the lens with poses and point.
-inline void add_lens(const PixelTerm& term, const LensJacobian& J_lens, const LensRows& rows,
-                     const NormalEquations& to) {
+inline void add_lens(const PixelTerm& term, LensJacobian J_lens, const LensRows& rows, const NormalEquations& to) {
+  J_lens.col(kReadoutParameter) += term.by_readout;
   const int first = to.plane_columns;
   Scalar* w = to.lens_row(term.point);
   for (int a = 0; a < to.lens_columns; ++a) {
@@ -101,6 +103,14 @@ inline Mat23 matrix_of(const Columns& columns) {
   return J;
 }
 
+/// The residual becomes that by the camera's readout.
+inline void take_readout(const Camera& camera, const BundleLens& lens, int pose, const Mat3& R_CW, const Mat23& J,
+                         const Vec3& d, Scalar rho, const BundlePixel& measured, PixelTerm* term) {
+  const ViewOfRows view = {R_CW, lens.rates[pose], lens.readout_before};
+  term->by_readout = readout_column(camera, view, measured.pixel().y(), J, d, rho);
+  term->r -= (camera.readout - lens.readout_before) * term->by_readout;
+}
+
 }  // namespace
 
 /// Adds a point's pixels to H_pp and b, and to its row of W, D and g. Fixed poses have neither columns nor Jacobians.
@@ -113,7 +123,7 @@ void BundleTerms::add_pixels(const Camera& camera, const AdjustOptions& options,
   const Vec3 p_H = bundle.pose[host].p_W;
   const Scalar rho = bundle.rho[point];
   const bool is_pinhole = camera.model == static_cast<int>(CameraModel::kPinhole);
-  const bool has_lens = equations.lens_columns > 0;
+  const bool has_lens = equations.lens_columns > 0, has_readout = has_lens && bundle.lens->rates != nullptr;
   Scalar D = sums->D, g = sums->g, cost = sums->cost;
   std::uint32_t seen_by = 0;
   Scalar information = Scalar(1) / (options.sigma_px * options.sigma_px);
@@ -132,6 +142,7 @@ void BundleTerms::add_pixels(const Camera& camera, const AdjustOptions& options,
       continue;
     }
     term.r = measured.pixel() - z.pixel;
+    if (has_readout) take_readout(camera, *bundle.lens, c, R_CW, matrix_of(z.in_W(R_CW)), d, rho, measured, &term);
     if (options.class_sigma_px != nullptr) {
       const Scalar sigma = options.class_sigma_px[measured.sigma_class];
       information = Scalar(1) / (sigma * sigma);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bundle/row_column.h"
 #include "bundle/tuning.h"
 
 namespace pf {
@@ -192,11 +193,21 @@ bool BundleTerms::set_ray(const Bundle& bundle, int point, RayByLens* J_ray_W) c
   if (J_ray_W != nullptr) J_ray_W->setZero();
   if (!host.given) return true;
   Mat32 J_ray_z;
-  if (!unproject(*lens.camera, host.pixel, &lens.ray[point], J_ray_W != nullptr ? &J_ray_z : nullptr)) return false;
-  if (J_ray_W != nullptr)
-    *J_ray_W = R_CW_[host_of(bundle, point)].transpose().lazyProduct(
-        ray_lens_jacobian(*lens.camera, lens.ray[point], J_ray_z));
+  const Vec2 by_readout = lens.rates != nullptr ? host_column(bundle, point) : Vec2(Vec2::Zero());
+  const Vec2 pixel = host.pixel - (lens.camera->readout - lens.readout_before) * by_readout;
+  if (!unproject(*lens.camera, pixel, &lens.ray[point], J_ray_W != nullptr ? &J_ray_z : nullptr)) return false;
+  if (J_ray_W == nullptr) return true;
+  RayByLens J_ray = ray_lens_jacobian(*lens.camera, lens.ray[point], J_ray_z);
+  J_ray.col(kReadoutParameter) -= J_ray_z.lazyProduct(by_readout);
+  *J_ray_W = R_CW_[host_of(bundle, point)].transpose().lazyProduct(J_ray);
   return true;
+}
+
+Vec2 BundleTerms::host_column(const Bundle& bundle, int point) const {
+  const BundleLens& lens = *bundle.lens;
+  const int host = host_of(bundle, point);
+  const ViewOfRows view = {R_CW_[host], lens.rates[host], lens.readout_before};
+  return readout_column(*lens.camera, view, lens.host_pixel[point].pixel, bundle.rho[point]);
 }
 
 Scalar BundleTerms::add_lens_prior(const Bundle& bundle, bool cost_alone) {

@@ -55,6 +55,7 @@ class BundleTerms {
   void add_pixels(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums);
   template <bool kCostAlone>
   void add_plane(const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums);
+  Vec2 host_column(const Bundle& bundle, int point) const;
   Scalar add_lens_prior(const Bundle& bundle, bool cost_alone);
   Scalar add_held_distance(const Bundle& bundle, bool cost_alone);
 

@@ -22,8 +22,8 @@ bool project_zoomed(const Camera& camera, const CameraPose& pose, Scalar s, cons
   return true;
 }
 
-void ZoomPoints::add(const PnpPoint& point, Scalar variance) {
-  if (count_ < kMax && variance > Scalar(0)) point_[count_++] = {point, variance};
+void ZoomPoints::add(const PnpPoint& point, Scalar variance, const Vec2& by_readout) {
+  if (count_ < kMax && variance > Scalar(0)) point_[count_++] = {point, variance, by_readout};
 }
 
 ZoomFit ZoomPoints::fit(const Camera& camera, const CameraPose& near) const {
@@ -35,6 +35,8 @@ ZoomFit ZoomPoints::fit(const Camera& camera, const CameraPose& near) const {
     Mat6 A = Mat6::Zero();
     Vec6 a = Vec6::Zero(), b = Vec6::Zero();
     Scalar c = 0, g = 0, chi2 = 0;
+    Vec6 h = Vec6::Zero();  // of the readout, in its standard deviation
+    Scalar k = 0, f = 0, q = 1;
     for (int i = 0; i < count_; ++i) {
       const PnpPoint& point = point_[i].point;
       Vec2 u, by_zoom;
@@ -48,7 +50,18 @@ ZoomFit ZoomPoints::fit(const Camera& camera, const CameraPose& near) const {
       c += weight * by_zoom.squaredNorm();
       g += weight * by_zoom.dot(r);
       chi2 += weight * r.squaredNorm();
+      const Vec2 by_readout = weight * point_[i].by_readout;
+      h += J.transpose().lazyProduct(by_readout);
+      k += by_zoom.dot(by_readout);
+      f += by_readout.dot(r);
+      q += by_readout.dot(point_[i].by_readout);
     }
+    A -= h * h.transpose() / q;
+    a -= h * (k / q);
+    b -= h * (f / q);
+    c -= k * k / q;
+    g -= k * f / q;
+    chi2 -= f * f / q;
     SmallCholesky<6> factored;
     if (!factored.factor(A)) return out;
     const Vec6 A_a = factored.solve<1>(a);

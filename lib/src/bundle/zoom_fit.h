@@ -25,12 +25,13 @@ class ZoomPoints {
  public:
   static constexpr int kMax = 64;
 
-  /// variance: of each coordinate of the pixel, its own noise and that of the point's depth [px^2].
-  void add(const PnpPoint& point, Scalar variance);
+  /// variance: of each coordinate of the pixel, its own noise and that of the point's depth [px^2]. by_readout: by how much one standard
+  /// deviation of the camera's readout moves it [px]: rows that are read out later stretch an image that moves along them as a zoom does.
+  void add(const PnpPoint& point, Scalar variance, const Vec2& by_readout = Vec2::Zero());
 
-  /// Least squares of the pixels over pose and log ratio s together, from a pose nearby. A longer lens and a camera nearer to a scene of
-  /// one depth give the same image; the variance, with the pose eliminated, allows for that, and grows with the points' residuals, which
-  /// contain the map's own errors:
+  /// Least squares of the pixels over pose, log ratio s and the readout's error (about zero) together, from a pose nearby. A longer lens
+  /// and a camera nearer to a scene of one depth give the same image; the variance, with pose and readout eliminated, allows for that, and
+  /// grows with the points' residuals, which contain the map's own errors:
   ///
   ///   var(s) = max(1, chi^2 / (2n - 7)) / (c_ss - a^T A^-1 a)
   ///
@@ -41,6 +42,7 @@ class ZoomPoints {
   struct Point {
     PnpPoint point;
     Scalar variance;
+    Vec2 by_readout;
   };
   Point point_[kMax];
   int count_ = 0;

@@ -54,6 +54,8 @@ void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   const CameraView before = motion_.view();
   const int keyframe = add_keyframe(frame_, motion_.view(), settings_.window_keyframes, &map_);
   map_.keyframes[keyframe].matches_by_motion = !young;
+  map_.keyframes[keyframe].v_W = motion_.body().v_W;
+  map_.keyframes[keyframe].w_C = motion_.body().w_C;
   if (young) triangulate_inliers(young);
   adjust();
   const CameraView now = motion_.view();

@@ -112,6 +112,9 @@ bool read_inertial(const Settings& settings, const KeyframeSlam& slam, InertialV
   const KeyframeUnit& unit = slam.placement().unit();
   if (!settings.inertial || !unit.has_begun()) return false;
   describe(settings, unit.filter(), unit, unit.is_from_motion(), out);
+  const KeyframeLens& lens = slam.map().lens();
+  out->readout_s = static_cast<double>(lens.camera().readout);
+  if (lens.rows().has_readout()) out->sigma[15] = std::sqrt(std::max(Scalar(0), lens.readout_variance()));
   // The filter has gravity in the map about the camera, which may be tilted in W.
   const Mat3 of_map = slam.placement().map_covariance(slam.motion().body().p_W).topLeftCorner<3, 3>();
   for (int i = 0; i < 2; ++i)

@@ -35,6 +35,7 @@ bool KeyframeBundle::layout(Arena& arena, const Settings& settings) {
   poses.pose = arena.take<BundlePose>(max_poses);
   poses.keyframe = arena.take<int>(max_poses);
   poses.pixel = arena.take<BundlePixel>((max_poses - 1) * max_points);
+  poses.rates = settings.lens.rows.has_readout() ? arena.take<BundleRates>(max_poses) : nullptr;
   points.ray = arena.take<Vec3>(max_points);
   points.host = arena.take<int>(max_points);
   points.rho = arena.take<Scalar>(max_points);
@@ -65,6 +66,14 @@ void fill_points(const KeyframeMap& map, int stride, AdjustedPoses* poses, Adjus
     points->ray[p] = point.ray_K;
     points->host[p] = pose_of(map, point.host, poses);
     points->rho[p] = points->rho_before[p] = point.rho;
+  }
+}
+
+void fill_rates(const KeyframeMap& map, const AdjustedPoses& poses) {
+  for (int c = 0; c < poses.count; ++c) {
+    const int k = poses.keyframe[c];
+    poses.rates[c] =
+        k < 0 ? BundleRates{Vec3::Zero(), Vec3::Zero()} : BundleRates{map.keyframes[k].v_W, map.keyframes[k].w_C};
   }
 }
 

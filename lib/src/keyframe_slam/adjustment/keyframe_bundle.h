@@ -18,6 +18,7 @@ struct AdjustedPoses {
   int* keyframe = nullptr;  ///< of each, -1 of the target's host
   BundlePose* pose = nullptr;
   BundlePixel* pixel = nullptr;  ///< max_features for each
+  BundleRates* rates = nullptr;  ///< of each; null where the readout is exact
 };
 
 /// Points: first those that the poses see, then others of the same planes.
@@ -55,6 +56,8 @@ int max_bundle_poses();
 void fill_poses(const KeyframeMap& map, int stride, AdjustedPoses* poses);
 /// Points that were chosen, and their pixels. Their hosts become fixed poses without pixels where they are not in the bundle yet.
 void fill_points(const KeyframeMap& map, int stride, AdjustedPoses* poses, AdjustedPoints* points);
+/// With which velocities the rows of each pose were read out.
+void fill_rates(const KeyframeMap& map, const AdjustedPoses& poses);
 /// A weak prior on inverse depths that leaves the scale where it is: it holds what nothing else does.
 RhoPrior weak_prior(const AdjustedPoints& points);
 /// Holds points that the bundle has no pixels of by the pixels of their own keyframes.

@@ -4,6 +4,7 @@
 
 #include "frame/feature_upkeep.h"
 #include "frame/tuning.h"
+#include "keyframe_slam/map/readout.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/map/tuning.h"
 
@@ -43,6 +44,7 @@ HostPixel KeyframeMap::host_pixel(int i) const {
 }
 
 void KeyframeMap::move_lens(const Camera& camera) {
+  if (lens_.rows().has_readout()) move_readout(camera.readout, settings_.start_depth, this);
   for (int i = 0; i < capacity(); ++i) {
     if (!used(i)) continue;
     const HostPixel host = host_pixel(i);

@@ -43,7 +43,8 @@ class KeyframeMap {
   const Camera& camera() const { return lens_.camera(); }
   KeyframeLens& lens() { return lens_; }
   const KeyframeLens& lens() const { return lens_; }
-  /// Another estimate of the lens: bearings become those of the same pixels of their hosts. Points of the target stay where they are.
+  /// Another estimate of the lens: bearings become those of the same pixels of their hosts, and with another readout pixels those of their
+  /// frames' times by it. Points of the target stay where they are.
   void move_lens(const Camera& camera);
   /// Ray of a point in its host, by the present lens.
   HostPixel host_pixel(int i) const;

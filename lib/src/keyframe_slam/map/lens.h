@@ -19,6 +19,10 @@ class KeyframeLens {
   const Camera& camera() const { return camera_; }
   const Scalar* covariance() const { return covariance_; }
 
+  /// Of the readout [s^2]; 0 where it is exact.
+  Scalar readout_variance() const {
+    return rows_.has_readout() ? covariance_[rows_.count * rows_.count - 1] : Scalar(0);
+  }
   /// The lens is where an adjustment has found it.
   void move(const Camera& camera) { camera_ = camera; }
   /// Covariance from an adjustment whose pixels were weighted `inflation` times too much.

@@ -143,6 +143,21 @@ void KeyframeRecord::set_speeds(Body* body) const {
   body->w_C = log_so3(then.q_WC.conjugate() * now.q_WC) / dt;
 }
 
+/// Of the first keyframe, where the readout of its rows is uncertain, by the record's first frames.
+void KeyframeRecord::set_first_speeds() {
+  const StartRecord& record = solver_.record();
+  const int after = std::min(kSpeedFrames, record.frames()) - 1;
+  if (!map_.lens().rows().has_readout() || after < 0) return;
+  for (const int k : used_entries(map_.keyframes)) {
+    Keyframe& first = map_.keyframes[k];
+    if (!map_.keyframes.is_first(k)) continue;
+    const CameraView now = solver_.view(after);
+    const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(first.t_ns, record.frame(after).t_ns)));
+    first.v_W = (now.c_W - first.p_W) / dt;
+    first.w_C = log_so3(first.q_WC.conjugate() * now.q_WC) / dt;
+  }
+}
+
 /// Where the solution has the frame of the second pose that the caller gave.
 void KeyframeRecord::note_second_pose() {
   const StartRecord& record = solver_.record();
@@ -177,6 +192,7 @@ void KeyframeRecord::take_solution() {
   solved_before_ = 0;
   const CameraView now = solver_.view(solver_.record().frames() - 1);
   note_second_pose();
+  set_first_speeds();
   take_points();
   Body body = motion_.body();
   body.q_WC = now.q_WC;

@@ -50,6 +50,7 @@ class KeyframeRecord {
   void begin_again();
   void move_view(KeyframePoint* point, std::int64_t seen_ns) const;
   void set_speeds(Body* body) const;
+  void set_first_speeds();
   void note_second_pose();
   void take_points();
   void take_solution();

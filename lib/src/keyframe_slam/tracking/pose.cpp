@@ -18,6 +18,22 @@ using namespace tuning::keyframe_pose;
 
 constexpr Scalar kImpossible = Scalar(-1e6);  ///< ln of a density
 
+/// The readout's error c, in its standard deviation, in the normal equations of a pose.
+struct ReadoutTerm {
+  Vec6 a = Vec6::Zero();
+  Scalar q = 1, f = 0;
+
+  void add(const Vec2& by_readout, const Mat2& W, const Vec2& r) {
+    const Vec2 Wu = W * by_readout;
+    q += by_readout.dot(Wu);
+    f += Wu.dot(r);
+  }
+  void eliminate(Mat6* A, Vec6* b) const {
+    *A -= a * a.transpose() / q;
+    *b -= a * (f / q);
+  }
+};
+
 Mat2 inverse2(const Mat2& S) {
   Mat2 inverse;
   inverse << S(1, 1), -S(0, 1), -S(1, 0), S(0, 0);
@@ -36,6 +52,7 @@ bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const u
   for (int round = 0; round < kRounds; ++round) {
     A.setZero();
     Vec6 b = Vec6::Zero();
+    ReadoutTerm readout;
     for (int i = 0; i < count; ++i) {
       if (use[i] == 0) continue;
       const PnpPoint& point = matches[i].point;
@@ -49,7 +66,10 @@ bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const u
       const Eigen::Matrix<Scalar, 6, 2> JW = weight * J.transpose().lazyProduct(W);
       A += JW.lazyProduct(J);
       b += JW.lazyProduct(r);
+      readout.a += JW.lazyProduct(matches[i].by_readout);
+      readout.add(matches[i].by_readout, weight * W, r);
     }
+    readout.eliminate(&A, &b);
     Vec6 e;
     e << log_so3(prior.q_WC * pose.q_WC.conjugate()), prior.p_W - pose.p_WC;
     if (!factored.factor(Mat6(A + prior_information))) return false;
@@ -71,15 +91,17 @@ Scalar log_density(const Camera& camera, const PoseMatch* matches, int count, co
   Vec6 e;
   e << log_so3(prior.q_WC * pose.q_WC.conjugate()), prior.p_W - pose.p_WC;
   Scalar sum = -(e.dot(P.solve<1>(e)) + P.log_det() + posterior.log_det()) / 2;
+  ReadoutTerm readout;
   for (int i = 0; i < count; ++i) {
     if (use[i] == 0) continue;
     const PnpPoint& point = matches[i].point;
     Vec2 z;
     if (!project_from_pose(camera, pose.q_WC, pose.p_WC, point.m, point.w, pose.p_WC, &z)) return kImpossible;
     const Vec2 r = point.pixel - z;
+    readout.add(matches[i].by_readout, inverse2(matches[i].noise), r);
     sum += log_normal_density(squared_distance(r, matches[i].noise), std::log(matches[i].noise.determinant()), 1);
   }
-  return sum;
+  return sum + (readout.f * readout.f / readout.q - std::log(readout.q)) / 2;
 }
 
 bool KeyframePose::layout(Arena& arena, int capacity) {

@@ -16,13 +16,20 @@ class Archive;
 struct PoseMatch {
   PnpPoint point;
   Mat2 noise;  ///< covariance of the pixel, the point's depth included [px^2]
+  /// By how much one standard deviation of the camera's readout moves where it is expected [px]; all matches share its error.
+  Vec2 by_readout = Vec2::Zero();
 };
 
 /// Fits the pose to the matches in use, and to the prior:
 ///
-///   min over (theta, p) of  sum rho(r_iᵀ R_i⁻¹ r_i) + eᵀ P⁻¹ e,   e = (theta, p) of the pose against the prior;  rho of Huber
+///   min over (theta, p, c) of  sum rho((r_i - u_i c)ᵀ R_i⁻¹ (r_i - u_i c)) + c² + eᵀ P⁻¹ e
 ///
-/// by Gauss-Newton from the pose in inout. information gets that of the matches alone, robust weights included.
+/// by Gauss-Newton from the pose in inout: e is (theta, p) of the pose against the prior, rho Huber's, and c the error of the readout in
+/// its standard deviation, u_i = by_readout. information gets that of the matches alone about the pose, robust weights included and c
+/// eliminated:
+///
+///   A - a aᵀ / q,   a = sum J_iᵀ R_i⁻¹ u_i,   q = 1 + sum u_iᵀ R_i⁻¹ u_i
+///
 /// use     of each match, whether it counts
 /// false   where a step cannot be computed; inout is then untouched
 bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
@@ -30,8 +37,9 @@ bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const u
 
 /// ln N(r; 0, S) of matches that count, jointly, where S has the noise of each and what the prior leaves open of the pose:
 ///
-///   ln N(r; 0, S) = sum ln N(r_i; 0, R_i) - (eᵀ P⁻¹ e + ln det(I + P A)) / 2        r_i, e at the fitted pose, A its information
+///   ln N(r; 0, S) = sum ln N(r_i; 0, R_i) - (eᵀ P⁻¹ e + ln det(I + P A) + ln q - f² / q) / 2,   f = sum u_iᵀ R_i⁻¹ r_i
 ///
+/// with r_i and e at the fitted pose and A its information,
 /// exact where the projection is linear. Hardly likely, kImpossible, where P is no covariance.
 Scalar log_density(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
                    const PosePrior& prior, const CameraPose& pose, const Mat6& information);

@@ -8,6 +8,7 @@
 #include "bundle/zoom_fit.h"
 #include "frame/pose_hypotheses.h"
 #include "frame/tuning.h"
+#include "keyframe_slam/map/readout.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/tracking/frame_time.h"
 #include "keyframe_slam/tracking/tuning.h"
@@ -32,6 +33,11 @@ void PoseMeasurement::make_match(int c, const PosePrior& prior, Scalar depth, in
   out.point = {map_.ray_W(match.feature) + rho * map_.keyframes[point.host].p_W, rho,
                match_at_frame_time(map_, match, prior, depth)};
   out.noise = noise_of(c, prior, depth, shared);
+  out.by_readout = Vec2::Zero();
+  const Scalar variance = map_.lens().readout_variance();
+  if (variance > Scalar(0))
+    out.by_readout =
+        std::sqrt(variance) * expected_by_readout(map_, match.feature, prior.body(), rho, match.measured.y());
 }
 
 /// Noise of a point without a depth of its own, taken at the median depth with the same standard deviation, times the baseline (the prior's
@@ -77,15 +83,20 @@ int PoseMeasurement::fit(int found, const PosePrior& prior, Scalar depth, int sh
   return inliers;
 }
 
-/// By points that have a depth; each with the noise that its depth adds.
+/// By points that have a depth; each with the noise that its depth adds. A map of images that unknown rows have bent is no measure of
+/// another image's focal length: the evidence counts by the share of the readout's prior variance that adjustments have removed.
 void PoseMeasurement::weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const {
   ZoomPoints points;
   for (int c = 0; c < found; ++c) {
     if (!pose_.is_inlier(c) || !map_.point(search_.match(c).feature).has_depth) continue;
     const PoseMatch& match = pose_.match(c);
-    points.add(match.point, match.noise.trace() / 2);
+    points.add(match.point, match.noise.trace() / 2, match.by_readout);
   }
   note_zoom(points.fit(map_.camera(), pose), settings_, consensus);
+  const LensPrior& prior = settings_.lens;
+  if (!prior.rows.has_readout()) return;
+  const Scalar open = map_.lens().readout_variance() / prior.variance[prior.rows.count - 1];
+  consensus->lens_evidence *= std::clamp(1 - open, Scalar(0), Scalar(1));
 }
 
 PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
