@@ -1,5 +1,5 @@
 /* No feature has been seen more often than it was looked for: also where a frame contradicts its inertial samples and is measured again
- * without them, where the window finds too few features for its pose, and where it is given their pixels. */
+ * without them, and where the window finds too few features for its pose. */
 #include <stdio.h>
 
 #include "support/inertial_unit.h"
@@ -109,28 +109,9 @@ static void test_a_frame_that_does_not_support_the_window_s_pose_should_count_wh
   }
 }
 
-static void test_pixels_that_the_window_is_given_should_count_as_looked_for(void) {
-  config.backend = PF_BACKEND_WINDOW;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
-  free_block(block);
-  block = new_block(need.bytes, 0x55);
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, need.bytes, &slam));
-  for (int k = 0; k < 40; ++k) {
-    TEST_ASSERT_TRUE(push(slam, k) >= PF_OK);
-    require_counts(0, k);
-  }
-  pf_feature_t features[120];
-  size_t count = 0;
-  int most = 0;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_features(slam, features, 120, &count));
-  for (size_t i = 0; i < count; ++i) most = features[i].attempts > most ? features[i].attempts : most;
-  TEST_ASSERT_GREATER_THAN_INT(20, most);
-}
-
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_a_frame_that_is_measured_again_should_count_once);
   RUN_TEST(test_a_frame_that_does_not_support_the_window_s_pose_should_count_what_it_takes);
-  RUN_TEST(test_pixels_that_the_window_is_given_should_count_as_looked_for);
   return UNITY_END();
 }

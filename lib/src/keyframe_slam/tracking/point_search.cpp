@@ -110,7 +110,6 @@ bool PointSearch::find(int c, const PosePrior& at, Scalar depth) {
   Match& match = frame_.match(point_[c].match);
   if (given_.are_given()) {
     const PixelObservation& pixel = *given_.of(match.feature);
-    match.searched = true;
     ++frame_.report.attempts;
     match.measured = pixel.pixel;
     point_[c].noise = Mat2::Identity() * (pixel.sigma_px * pixel.sigma_px);
