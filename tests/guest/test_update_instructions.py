@@ -35,11 +35,13 @@ built = cross.build("aarch64", "planefold", "planefoldf")
 found = {}
 with tempfile.TemporaryDirectory() as folder:
     for library, scalar in (("planefold", []), ("planefoldf", ["-DPLANEFOLD_SCALAR_FLOAT=1"])):
-        objects = sorted((built / "lib" / "CMakeFiles" / f"{library}_objects.dir" / "src" / "covariance").rglob("*.o"))
+        kernels = sorted((built / "lib" / "CMakeFiles" / f"{library}_fast_objects.dir" / "src" / "covariance" / "tuned").rglob("*.o"))
+        others = sorted(path for path in (script.SOURCE / "lib" / "src" / "covariance").rglob("*.cpp") if path.parent.name != "tuned")
         program = pathlib.Path(folder) / f"updates_{library}"
         bench = script.SOURCE / "tools" / "pf-bench"
         script.run(cross.compiler("aarch64", "g++"), "-O2", "-std=c++17", *scalar, "-I", script.SOURCE / "lib" / "src", "-I", bench,
-                   script.SOURCE / "tests" / "guest" / "counted_updates.cpp", bench / "covariance_problem.cpp", *objects, "-o", program)
+                   script.SOURCE / "tests" / "guest" / "counted_updates.cpp", bench / "covariance_problem.cpp", *others, *kernels,
+                   "-o", program)
         found[library] = (instructions(program, 3) - instructions(program, 1)) // 2
 
 if os.environ.get("PLANEFOLD_UPDATE_GOLDEN") == "1":
