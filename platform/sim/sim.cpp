@@ -10,6 +10,7 @@
 #include "sim/paths.h"
 #include "sim/render.h"
 #include "sim/scene_box.h"
+#include "sim/scene_loop.h"
 #include "sim/scene_road.h"
 #include "sim/scene_street.h"
 #include "sim/sensor.h"
@@ -70,6 +71,7 @@ const SceneKind kScenes[] = {
     {"bushes", make_bushes, bushes_path, 600, nullptr},
     {"road", make_road, road_path, 600, adjust_ride},
     {"equal-room", make_equal_room, room_path, 840, [](pf_sim_options_t* o) { o->target = 0; }},
+    {"loop", make_loop, loop_path, kLoopFrames, [](pf_sim_options_t* o) { o->noise_grey = 5; }},
     {"equal-doors", make_equal_doors, corridor_path, 480, [](pf_sim_options_t* o) { o->target = 0; }},
 };
 

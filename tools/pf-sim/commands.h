@@ -13,6 +13,7 @@ void add_rendered(CLI::App& app, int& result);
 void add_kidnap(CLI::App& app, int& result);
 void add_rest(CLI::App& app, int& result);
 void add_box(CLI::App& app, int& result);
+void add_loop(CLI::App& app, int& result);
 void add_street(CLI::App& app, int& result);
 void add_vio(CLI::App& app, int& result);
 void add_templates(CLI::App& app, int& result);

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   pfsim::add_rest(app, result);
   pfsim::add_box(app, result);
   pfsim::add_street(app, result);
+  pfsim::add_loop(app, result);
   pfsim::add_vio(app, result);
   pfsim::add_templates(app, result);
   int code = 0;

@@ -24,6 +24,7 @@
  *         road      72 m past poles, parked boxes and fronts
  *         equal-room    a room whose four walls look the same; no target
  *         equal-doors   a corridor whose walls repeat every 2 m; no target
+ *         loop      a ring of corridors, walked once around and on along its beginning: 25 m and 5 m
  *
  * W is the centre of the target: x right, y down, z into the wall; of the box, its middle; of the street, where the camera
  * begins. The same seed and options give the same pixels.
