@@ -64,7 +64,6 @@ def test_what_the_window_cannot_do_should_be_refused_by_name():
     expect_refusal(["--backend window", "--gross"], "box", *window, "--gross", 0.1)
     expect_refusal(["--backend window", "--no-points"], "street", *window, "--no-points")
     expect_refusal(["--backend window", "--max-state-dim"], "street", *window, "--max-state-dim", 800)
-    expect_refusal(["--backend window", "--estimate readout"], "vio", *window, "--estimate", "readout")
     for experiment in ("box", "street", "vio", "rendered", "clutter", "road"):
         expect_refusal(["--backend", "keyframes"], experiment, "--backend", "keyframes")
 

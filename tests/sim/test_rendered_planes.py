@@ -20,6 +20,8 @@ with tempfile.TemporaryDirectory() as folder:
     report = pathlib.Path(folder) / "report.json"
     run(BIN / "pf-sim", "rendered", "--scene", "corridor", "--seeds", SEEDS, "--frames", FRAMES, "--jobs", 2, "--json", report)
     corridor = json.loads(report.read_text())["cases"]["corridor"]
+    run(BIN / "pf-sim", "rendered", "--backend", "window", "--scene", "corridor", "--seeds", SEEDS, "--frames", FRAMES, "--jobs", 2, "--json", report)
+    window = json.loads(report.read_text())["cases"]["corridor"]["planes"]
     run(BIN / "pf-sim", "rendered", "--scene", "room", "--seeds", SEEDS, "--first-seed", FIRST_SEED, "--frames", FRAMES,
         "--jobs", 2, "--max-features", 300, "--max-state-dim", 800, "--max-planes", 16, "--json", report)
     case = json.loads(report.read_text())["cases"]["room"]
@@ -52,3 +54,6 @@ print(f"corridor: {folds}; planes found {corridor['planes']['found']} of {corrid
 require(corridor["lost_runs"] == 0, "a run in the corridor was lost")
 require(folds["due"] >= 40 and folds["share"] >= 0.7, f"of {folds['due']} points that lie on a wall with others {folds['share']:.1%} are folded in time")
 require(folds["wrong_share"] <= 0.02, f"{folds['wrong_share']:.2%} of the points on planes are on a wrong one")
+# Where the map has drifted, its planes have drifted with their keyframes, and their covariance has it.
+print(f"corridor, window: NEES of {window['true']} planes {window['nees_mean']:.1f} of 3")
+require(window["true"] > 0 and window["nees_mean"] < 9, f"planes' NEES in the window is {window['nees_mean']:.1f} of 3")

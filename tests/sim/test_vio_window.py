@@ -1,5 +1,6 @@
 """pf-sim vio --backend window: samples give the map of the window its metres while the camera moves, with the unit's mounting and delay known
-and with both estimated, and bridge a second without a picture; a unit that is wrong is rejected, and the map goes on."""
+and with both estimated, and bridge a second without a picture; a unit that is wrong is rejected, and the map goes on; rows of a phone that
+nothing tells are no other lens."""
 
 import json
 import pathlib
@@ -37,3 +38,7 @@ with tempfile.TemporaryDirectory() as name:
 
     wrong = report(folder, *known, "--seeds", "1", "--first-seed", "41", "--seconds", "15", "--fault", "reversed", "--fault-at", "8")
     require(wrong["doubt"]["runs"] == 1 and wrong["lost_runs"] == 0, f"a unit whose axes turn round: {wrong['doubt']}")
+
+    phone = report(folder, "--seeds", "2", "--first-seed", "603", "--seconds", "14", "--unit", "phone")
+    require(phone["starts"]["accepted"] == 2 and phone["doubt"]["runs"] == 0 and phone["lost_runs"] == 0, f"a phone: {phone['starts']}, lost {phone['lost_runs']}")
+    require(phone["nees_pose"]["mean"] < 12, f"a phone: {phone['nees_pose']}")

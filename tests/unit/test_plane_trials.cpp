@@ -1,7 +1,6 @@
 // Features that began on a plane because their corner lies in its outline: what makes them believed, and what makes them go.
-#include "filter_slam/planes/plane_trials.h"
-
 #include "belief/plane_membership.h"
+#include "filter_slam/planes/plane_trials.h"
 #include "same.h"
 #include "support/plane_keeper_bench.h"
 

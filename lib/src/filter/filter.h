@@ -237,8 +237,7 @@ class Filter {
   Mat3 covariance3(int slot) const;
   /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.
   bool scale_row(ScaleRow* row) const;
-  /// Covariance of a 3-D point against the camera's position and the world's scale: of f - p - (f - p) l e, without the drift and scale
-  /// that all points share.
+  /// Covariance of a 3-D point against the camera's position and the world's scale: of f - p - (f - p) l e.
   Mat3 relative_covariance(int slot, const ScaleRow& l) const;
   /// Standard deviation of an inverse depth against the world's scale: of e_rho + rho l e.
   Scalar relative_sigma_rho(int slot, const ScaleRow& l) const;

@@ -20,8 +20,8 @@ inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from ther
 
 /// Features that began on a plane.
 namespace plane_trials {
-inline constexpr Scalar kPixel = 1;           ///< [px] of a match, with what it has in common with other frames'
-inline constexpr Scalar kDoubt = Scalar(1);   ///< log-odds against it from which on it goes, since it bends the plane
+inline constexpr Scalar kPixel = 1;          ///< [px] of a match, with what it has in common with other frames'
+inline constexpr Scalar kDoubt = Scalar(1);  ///< log-odds against it from which on it goes, since it bends the plane
 inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
 }  // namespace plane_trials
 

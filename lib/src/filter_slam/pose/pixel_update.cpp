@@ -47,24 +47,23 @@ int PixelUpdate::reject_contradicted(int first, int count, JointFit* fit) {
   return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
 }
 
-/// A point that began at a wall is correlated with it, but may stand before it; one that began on a plane is a row of it, and has not shown
-/// yet that it lies there. Until they are members their pixels tell the camera and their own rows, and walls and planes are considered:
-/// all points before a plane would move it the same way.
+/// A point that began at a wall is correlated with it, but may stand before it. Until it is folded into a plane its pixels tell the camera
+/// and its own depth, and the walls are considered: all points before a wall would move it the same way.
 ///
-/// planes: kMaxPlanes slots
-PartlyConsidered PixelUpdate::planes_of_undecided(int first, int count, int* planes) {
+/// walls: kMaxPlanes slots
+PartlyConsidered PixelUpdate::undecided_walls(int first, int count, int* walls) {
   PartlyConsidered partly;
   int undecided = 0;
   for (int i = 0; i < count; ++i) {
     const Feature& feature = map_.features[candidate_[first + i].feature];
-    const bool at_wall = feature.began_by_wall && !is_planar(filter_.state().block[feature.slot].kind);
-    scratch_[i] = at_wall || feature.on_trial ? 0 : 1;
-    undecided += scratch_[i] == 0 ? 1 : 0;
+    const bool tells = !feature.began_by_wall || is_planar(filter_.state().block[feature.slot].kind);
+    scratch_[i] = tells ? 1 : 0;
+    undecided += tells ? 0 : 1;
   }
   if (undecided == 0) return partly;
   for (const int k : used_entries(map_.planes))
-    if (map_.planes[k].counts()) planes[partly.count++] = map_.planes[k].slot;
-  partly.block = planes;
+    if (map_.planes[k].known && map_.planes[k].counts()) walls[partly.count++] = map_.planes[k].slot;
+  partly.block = walls;
   partly.estimates = scratch_;
   return partly;
 }
@@ -98,8 +97,8 @@ UpdateOutcome PixelUpdate::apply(int first, int count, const UpdateMode& mode, c
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   UpdateOutcome now = before;
   bool depths_only = mode.depths_first && !before.is_pose_open && are_depths_open(first, count);
-  int planes[kMaxPlanes];
-  EstimatedRows rows = {mode.rows.motion && !depths_only, mode.rows.map, planes_of_undecided(first, count, planes)};
+  int walls[kMaxPlanes];
+  EstimatedRows rows = {mode.rows.motion && !depths_only, mode.rows.map, undecided_walls(first, count, walls)};
   Scalar sum = 0, pose_nis = 0, of_rotation = 0;
   bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum, rows);
   const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis, &of_rotation);

@@ -74,7 +74,7 @@ class PixelUpdate {
   UpdateOutcome apply(int first, int count, const UpdateMode& mode, const UpdateOutcome& before = UpdateOutcome());
 
  private:
-  PartlyConsidered planes_of_undecided(int first, int count, int* planes);
+  PartlyConsidered undecided_walls(int first, int count, int* walls);
   void reject(int first, int count);
   void count_inliers(int first, int count);
   bool are_depths_open(int first, int count) const;
@@ -88,7 +88,7 @@ class PixelUpdate {
   Candidate* candidate_ = nullptr;
   PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
-  /// Scratch behind keep_, of each match: frames in which its feature was measured, up to 255; whether it tells where planes are.
+  /// Scratch behind keep_, of each match: frames in which its feature was measured, up to 255; whether it tells where walls are.
   unsigned char* scratch_ = nullptr;
   LeaveOneOut others_;
   ProposedPoses proposals_{settings_, filter_};
