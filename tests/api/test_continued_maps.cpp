@@ -171,6 +171,7 @@ void test_what_was_rejected_should_have_told_nothing() {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_push_imu(slam, &sample, 1));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_set_gravity(slam, nan3));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_mark_pose(slam));
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_NOTHING, pf_remove_anchor(slam, 7));
   TEST_ASSERT_EQUAL_INT(PF_OK, fresh.load(map));
 }
 

@@ -13,6 +13,19 @@ void tearDown(void) {}
 
 namespace {
 
+/// The map begins with a lens that is as uncertain as this, and with keyframes that look about the same way.
+void begin_with_lens(KeyframeBench* bench, TestArena* more, const LensSigmas& sigmas) {
+  bench->settings.lens = make_lens_prior(sigmas, &bench->settings.camera);
+  TEST_ASSERT_TRUE(bench->adjustment.layout(**more));
+  bench->adjustment.init();
+  bench->map.init();
+  for (int k = 0; k < KeyframeBench::kKeyframes; ++k) {
+    const Scalar s = static_cast<Scalar>(k);
+    bench->map.keyframes.add(k, exp_so3(Vec3(Scalar(0.1) * std::sin(s), Scalar(0.05) * s, Scalar(0.2) * std::cos(s))),
+                             Vec3(Scalar(0.1) * s, Scalar(0.05) * std::sin(s), Scalar(0.03) * s));
+  }
+}
+
 /// Pixels of a camera with k1, about a calibration that names no distortion.
 struct LensBench : KeyframeBench {
   static constexpr double kK1 = -0.06, kSigma = 0.3;  // [px]
@@ -24,17 +37,7 @@ struct LensBench : KeyframeBench {
     sigmas.aspect = Scalar(0.001);
     sigmas.centre = Scalar(3);
     sigmas.distortion[0] = static_cast<Scalar>(sigma_k1);
-    if (sigma_k1 > 0) {
-      settings.lens = make_lens_prior(sigmas, &settings.camera);
-      TEST_ASSERT_TRUE(adjustment.layout(*more));
-      adjustment.init();
-      map.init();
-      for (int k = 0; k < kKeyframes; ++k) {
-        const Scalar s = static_cast<Scalar>(k);
-        map.keyframes.add(k, exp_so3(Vec3(Scalar(0.1) * std::sin(s), Scalar(0.05) * s, Scalar(0.2) * std::cos(s))),
-                          Vec3(Scalar(0.1) * s, Scalar(0.05) * std::sin(s), Scalar(0.03) * s));
-      }
-    }
+    if (sigma_k1 > 0) begin_with_lens(this, &more, sigmas);
     truth = settings.camera;
     truth.model = static_cast<int>(CameraModel::kRadtan);
     truth.distortion[0] = Scalar(kK1);
@@ -134,14 +137,8 @@ struct RowsBench : KeyframeBench {
   explicit RowsBench(std::uint64_t seed) : KeyframeBench(seed) {
     LensSigmas sigmas;
     sigmas.readout = Scalar(0.015);
-    settings.lens = make_lens_prior(sigmas, &settings.camera);
-    TEST_ASSERT_TRUE(adjustment.layout(*more));
-    adjustment.init();
-    map.init();
+    begin_with_lens(this, &more, sigmas);
     for (int k = 0; k < kKeyframes; ++k) {
-      const Scalar s = static_cast<Scalar>(k);
-      map.keyframes.add(k, exp_so3(Vec3(Scalar(0.1) * std::sin(s), Scalar(0.05) * s, Scalar(0.2) * std::cos(s))),
-                        Vec3(Scalar(0.1) * s, Scalar(0.05) * std::sin(s), Scalar(0.03) * s));
       map.keyframes[k].v_W = random.normals<3>(0.3);
       map.keyframes[k].w_C = random.normals<3>(0.5);
     }

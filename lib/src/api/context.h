@@ -41,9 +41,9 @@ class InCall {
   InCall(const InCall&) = delete;
   InCall& operator=(const InCall&) = delete;
 
-  /// What the call returns. A call that was rejected has told the context nothing.
+  /// What the call returns. A call that was rejected, or found nothing to change, has told the context nothing.
   pf_status_t end(pf_status_t status) const {
-    if (status >= PF_OK) slam_->is_told = true;
+    if (status >= PF_OK && status != PF_NOTE_NOTHING) slam_->is_told = true;
     return status;
   }
   pf_status_t end(Status status) const { return end(to_c(status)); }

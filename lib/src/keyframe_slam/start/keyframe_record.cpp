@@ -153,6 +153,7 @@ void KeyframeRecord::set_first_speeds() {
     if (!map_.keyframes.is_first(k)) continue;
     const CameraView now = solver_.view(after);
     const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(first.t_ns, record.frame(after).t_ns)));
+    if (!(dt > Scalar(0))) continue;
     first.v_W = (now.c_W - first.p_W) / dt;
     first.w_C = log_so3(first.q_WC.conjugate() * now.q_WC) / dt;
   }
