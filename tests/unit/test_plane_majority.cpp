@@ -78,6 +78,37 @@ void test_majority_should_know_its_plane_no_better_than_it_does() {
   TEST_ASSERT_TRUE(sum / judged > 1.5);
 }
 
+/// Three points at one end, 3 cm above the others, by least squares over all: with equal weights in closed form.
+void test_majority_should_say_how_points_that_are_off_would_bend_it() {
+  SeededRandom random(24);
+  MajoritySettings settings;
+  settings.roughness = Scalar(0.002);
+  for (int trial = 0; trial < 20; ++trial) {
+    Set set(random, 30, 0, 1e-4);
+    for (JudgedPoint& p : set.points) p.variance = Scalar(1e-8);
+    for (std::size_t i = 0; i < 3; ++i)
+      set.points[i].p_W = set.R * Vec3(Scalar(0.4), static_cast<Scalar>(0.1 * static_cast<double>(i)), Scalar(0.03));
+    MajorityPlane plane;
+    TEST_ASSERT_TRUE(set.judge(&plane, settings));
+    TEST_ASSERT_EQUAL_INT(3, plane.off);
+    Mat3 N = Mat3::Zero();
+    Vec3 b = Vec3::Zero();
+    for (const JudgedPoint& p : set.points) {
+      const Vec3 r = p.p_W - plane.c_W, u(1, plane.e_W[0].dot(r), plane.e_W[1].dot(r));
+      N += u * u.transpose();
+      b += u * plane.n_W.dot(r);
+    }
+    const Vec3 expected = N.inverse() * b;
+    TEST_ASSERT_TRUE((plane.bent - expected).norm() < Scalar(0.02) * expected.norm());
+    TEST_ASSERT_TRUE(expected.norm() > Scalar(0.01));
+  }
+  Set clean(random, 30, 0, 0.002);
+  MajorityPlane plane;
+  TEST_ASSERT_TRUE(clean.judge(&plane));
+  TEST_ASSERT_EQUAL_INT(0, plane.off);
+  TEST_ASSERT_TRUE(plane.bent.norm() < Scalar(1e-3));
+}
+
 void test_majority_should_be_none_where_too_few_are_known_or_agree() {
   SeededRandom random(23);
   MajorityPlane plane;
@@ -98,6 +129,7 @@ int main() {
   UNITY_BEGIN();
   RUN_TEST(test_majority_should_name_the_points_that_are_off_and_no_others);
   RUN_TEST(test_majority_should_know_its_plane_no_better_than_it_does);
+  RUN_TEST(test_majority_should_say_how_points_that_are_off_would_bend_it);
   RUN_TEST(test_majority_should_be_none_where_too_few_are_known_or_agree);
   return UNITY_END();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random_triples.h"
+#include "geometry/small_cholesky.h"
 #include "geometry/symmetric_eigen.h"
 #include "map/tuning.h"
 
@@ -85,6 +86,22 @@ bool refit(const JudgedPoint* points, const Scalar* sigma2, int count, MajorityP
   return true;
 }
 
+/// What a fit to members and points that are off gives, as an error of the plane.
+Vec3 bent_by_all(const JudgedPoint* points, const Scalar* sigma2, int count, const MajorityPlane& plane) {
+  Mat3 N = Mat3::Zero();
+  Vec3 b = Vec3::Zero();
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p = points[i].p_W - plane.c_W;
+    const Scalar r = plane.n_W.dot(p);
+    if (!points[i].is_off && !(r * r < kNear * kNear * sigma2[i])) continue;
+    const Vec3 u(1, plane.e_W[0].dot(p), plane.e_W[1].dot(p));
+    N += u * u.transpose() / sigma2[i];
+    b += u * (r / sigma2[i]);
+  }
+  SmallCholesky<3> factored;
+  return factored.factor(N) ? factored.solve<1>(b) : Vec3(Vec3::Zero());
+}
+
 }  // namespace
 
 bool find_majority(JudgedPoint* points, int count, const Vec3& n_W, const MajoritySettings& settings,
@@ -119,6 +136,7 @@ bool find_majority(JudgedPoint* points, int count, const Vec3& n_W, const Majori
     points[i].is_off = variance < known && height * height > kOff * kOff * variance;
     found.off += points[i].is_off ? 1 : 0;
   }
+  found.bent = bent_by_all(points, sigma2, count, found);
   *plane = found;
   return true;
 }

@@ -56,7 +56,7 @@ void PlaneRevision::revise(int plane_entry) {
   if (!find_majority(points, count, n_W, majority, seed, &found) || found.off == 0) return;
   for (int k = 0; k < count; ++k)
     if (points[k].is_off) leave(plane_entry, slots[k], points[k].p_W, found.n_W);
-  move_to(plane_entry, found);
+  straighten(plane_entry, found);
   Vec3 now_W;
   plane_normal(state.frame_of(state.block[plane]), state.block[plane].xyz(), &now_W, &d_W);
   settings_.hooks.say("plane ", entry.id, ": ", found.off, " of ", count,
@@ -78,15 +78,19 @@ void PlaneRevision::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3
   ++map_.planes[plane_entry].outliers;
 }
 
-void PlaneRevision::move_to(int plane_entry, const MajorityPlane& to) {
+void PlaneRevision::straighten(int plane_entry, const MajorityPlane& to) {
   PlaneEntry& entry = map_.planes[plane_entry];
   const State& state = filter_.state();
   const Block& block = state.block[entry.slot];
-  Vec3 x;
+  const PlaneFrame about = frame_of(to), own = state.frame_of(block);
+  Vec3 apart, x;  // from the majority's plane
   Mat3 J;
-  if (!reframe_plane(frame_of(to), Vec3::Zero(), state.frame_of(block), &x, &J)) return;
+  if (!reframe_plane(own, block.xyz(), about, &apart)) return;
+  apart -= Vec3(to.bent(1), to.bent(2), to.bent(0));
+  if (!reframe_plane(about, apart, own, &x, &J)) return;
   const Vec3 step = x - block.xyz(), variance(to.variance(1), to.variance(2), to.variance(0));
-  const Mat3 Q = kTwoSigma2 * J * variance.asDiagonal() * J.transpose() + step * step.transpose();
+  const Mat3 D = kTwoSigma2 * Mat3(variance.asDiagonal()) + apart * apart.transpose();
+  const Mat3 Q = J * D * J.transpose() + step * step.transpose();
   if (!filter_.slide_plane(entry.slot, x, Q, settings_.fold.roughness)) return;
   places_.forget(entry.slot);
   entry.seen = entry.support = PlaneOutline();

@@ -16,7 +16,7 @@ class PlaneRevision {
   PlaneRevision(const Settings& settings, Filter& filter, Map& map, const Frame& frame, OwnPlaces& places)
       : settings_(settings), filter_(filter), map_(map), frame_(frame), places_(places) {}
 
-  /// Points that do not lie on the plane of the others leave it, and it moves to where the others are.
+  /// Points that do not lie on the plane of the others leave it, and take with them what they have taught it.
   void revise(int plane_entry);
 
  private:
@@ -24,8 +24,10 @@ class PlaneRevision {
   int list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const;
   /// A point that lies elsewhere becomes a point of its own, where its ray has the height that its pixels say.
   void leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W);
-  /// Moves the plane to that of most of its points. Its covariance becomes that of the new plane, inflated by the step.
-  void move_to(int plane_entry, const MajorityPlane& to);
+  /// Takes from the plane what the points that are off have bent it by, by the own places of all of its points. These are placed by the
+  /// poses of different times and may have drifted, and so may the plane: it becomes uncertain by the step, by how far it stays from the
+  /// majority's plane, and by the variances of that.
+  void straighten(int plane_entry, const MajorityPlane& to);
 
   const Settings& settings_;
   Filter& filter_;
