@@ -148,7 +148,7 @@ bool Run::open(std::string& error, int& code) {
   const std::string title = options_.title.empty() ? short_name(options_.source) : options_.title;
   show_.open(options_, session_, "planefold   " + title, outputs_.path("overlay.mp4"), info.rate_hz, notes);
   if (!place_thread(options_.processor, options_.priority)) {
-    notes.emplace_back("--cpu or --priority was refused by the system (needs root, or RLIMIT_RTPRIO)");
+    notes.emplace_back("--cpu or --priority: the system does not allow it (needs root, or RLIMIT_RTPRIO)");
   }
   for (const std::string& line : notes) {
     note(line);
@@ -606,7 +606,7 @@ int run(const Options& options) {
   }
   const std::unique_ptr<Source> source = open_source(chosen, error);
   if (source == nullptr) {
-    return fail(error, is_calibration_wrong(options) ? kExitUsage : kExitRun);
+    return fail(error, is_command_line_wrong(options) ? kExitUsage : kExitRun);
   }
   return Run(chosen, *source, guesses ? &guess : nullptr).go();
 }

@@ -285,6 +285,8 @@ int run(Choices c) {
   if (!(c.box.gross >= 0 && c.box.gross <= 1)) return fail("--gross: a share from 0 to 1");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.box.frames < 1 || c.box.frames > 100000)
     return fail("--seeds, --jobs and --frames must be positive");
+  if (!(c.box.rate_hz > 0 && c.box.rate_hz <= 1000))
+    return fail("--rate must be above 0 and at most 1000 frames a second");
   Job job{&c, config_of(c), {}, nullptr, nullptr};
   for (const std::string& name : c.cases) {
     const auto* found =

@@ -179,6 +179,8 @@ int run(Choices c) {
   if (c.cases.empty()) c.cases = c.backend.is_window() ? std::vector<std::string>{"points"} : kDefaultCases;
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.street.frames < 1 || c.street.frames > 100000)
     return fail("--seeds, --jobs and --frames must be positive");
+  if (!(c.street.rate_hz > 0 && c.street.rate_hz <= 1000))
+    return fail("--rate must be above 0 and at most 1000 frames a second");
   Job job{&c, {}, nullptr, nullptr};
   for (const std::string& name : c.cases) {
     const auto* found =

@@ -49,8 +49,8 @@ def arguments(words):
     parser.add_argument("run", metavar="RUN", nargs="?")
     parser.add_argument("--truth", metavar="FILE", help="a file in one of the forms, or a folder of poses; default: report.json names it")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
-                        help="default: none where report.json says that the run started from a target, se3 where an inertial unit told "
-                             "its lengths, else sim3")
+                        help="default: none where report.json says that the run started from a target, se3 where an inertial unit "
+                             "measured its lengths, else sim3")
     parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
     parser.add_argument("--planes-truth", action="store_true", help="which members of the run's planes are right")
     parser.add_argument("--depth", metavar="DIR", help="depth images, for --planes-truth")
@@ -84,4 +84,8 @@ def arguments(words):
         parser.error("--planes needs a truth")
     if options.corners and not options.target:
         parser.error("--corners needs --target")
+    if options.target and not options.corners:
+        parser.error("--target needs --corners")
+    if options.skip_frames < 0 or options.skip_frames > 0 and not options.corners:
+        parser.error("--skip-frames is a number of frames of --corners, 0 or more")
     return options
