@@ -8,8 +8,8 @@
 
 namespace pf::capture {
 
-/// Why no map can be saved under this path, known before the run: it is a folder, there is no folder to hold it, or a file is there that is no
-/// saved map. One line; "": it can.
+/// Why no map can be saved under this path: it is a folder, there is no folder to hold it, or a file is there that is no saved map. One
+/// line; "": it can.
 std::string why_no_map_can_be_saved(const std::string& path);
 
 /// A saved map that the run begins in, and the one that it leaves.

@@ -79,7 +79,7 @@ class Source {
 
 /// null: error is one line.
 std::unique_ptr<Source> open_source(const Options& options, std::string& error);
-/// Whether a source cannot be opened because of the command line: there is no such scene, or a calibration is wrong, the one that is given or
+/// Whether the command line is why a source cannot be opened: there is no such scene, or a calibration is wrong, the one that is given or
 /// the calib.yaml in its folder.
 bool is_command_line_wrong(const Options& options);
 
