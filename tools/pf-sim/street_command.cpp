@@ -167,7 +167,7 @@ void print_case(const char* name, const json& j) {
   if (number("/walls/count") > 0)
     std::printf(
         "  fronts that were seen: %g, %.2f deg, %.3f m in the plan; %.2f deg, %.3f m at the end, NEES %.1f (3 dof); %g "
-        "doubted, %g at any time\n",
+        "rejected, %g at any time\n",
         number("/walls/count"), number("/walls/plan_angle_deg"), number("/walls/plan_offset_m"),
         number("/walls/angle_deg"), number("/walls/offset_m"), number("/walls/nees"), number("/walls/doubted"),
         number("/walls/doubted_ever"));

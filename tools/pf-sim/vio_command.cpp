@@ -276,7 +276,7 @@ void print_vio(const json& j, bool with_imu) {
                 number("/mount_sigmas/max"), number("/mount_sigmas/median"));
   if (number("/doubt/runs") > 0)
     std::printf(
-        "  the unit was doubted in %g runs, first at %.2f s (at the latest %.2f), for %.1f s a run; %g maps a run\n",
+        "  the unit was rejected in %g runs, first at %.2f s (at the latest %.2f), for %.1f s a run; %g maps a run\n",
         number("/doubt/runs"), number("/doubt/at_s/median"), number("/doubt/at_s/max"), number("/doubt/mean_s"),
         number("/doubt/maps_per_run"));
   if (j.contains("frames_until_tracked_again"))
@@ -307,7 +307,8 @@ bool print_starts(const json& j) {
   const bool good = accepted >= 0.88 * number("/starts/good") && number("/starts/wrong") <= 0.05 * (accepted + poor) &&
                     poor <= 0.1 * (number("/starts/tried") - number("/starts/good"));
   std::printf(
-      "starts while it moves: yes for %g of %g, and for %g of %g that tell too little; %g yeses wrong; after %.2f s "
+      "starts while it moves: accepted in %g of %g, and in %g of %g whose motion does not show the scale; %g of them "
+      "wrong; after %.2f s "
       "(at the "
       "latest %.2f), scale off by %.2f %% (95 %%: %.2f, largest %.2f; NEES %.2f of 1), gravity by %.2f degrees (%.2f, "
       "%.2f)\nverdict: %s\n",
@@ -383,7 +384,7 @@ std::string choose_unit(Choices* c) {
   if (c->unit != "laboratory" && c->unit != "phone") return "--unit " + c->unit + ": write laboratory or phone";
   if (o.axes > 23) return "--axes is 0 to 23";
   if (o.axes >= 0 && (has(c->imu_exact, "mount") || has(c->estimate, "mount")))
-    return "--axes: nothing is told of them; leave mount out of --imu-exact and --estimate";
+    return "--axes are not given to the filter: leave mount out of --imu-exact and --estimate";
   o.phone = c->unit == "phone";
   if (!o.phone && !c->parts.empty()) return "--parts are those of --unit phone; add that";
   const std::string no_part = choose_parts(c->parts, &o.phone_parts);
