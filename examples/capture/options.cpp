@@ -32,7 +32,9 @@ constexpr const char* kFooter =
     "map has moved, and truth.tum and truth_planes.json where the source knows them.\n"
     "Poses in a second map, which has a world of its own, go into trajectory_2.txt and so on.\n"
     "Exit code: 0 done, 1 the run failed, ended early, tracked nothing, or was lost at the end or most of the time,\n"
-    "2 the command line is wrong, or a file that it names beside the frames: calibration, start, walls, noise, mount.";
+    "2 the command line is wrong, or a file or folder that it names beside the frames: calibration, start, walls, "
+    "noise, mount,\n"
+    "map, --out, --record.";
 
 /// A whole number of at least this; CLI11's own checks spell out the largest double.
 CLI::Validator at_least(int64_t least) {

@@ -121,7 +121,7 @@ bool Run::open(std::string& error, int& code) {
   if (!session_.open(options_, source_, imu_, error, code)) {
     return false;
   }
-  code = kExitRun;
+  code = kExitUsage;  // of folders that the command line names
   relative_.open(options_.relative, session_.target() != nullptr);
   const bool patches = options_.tracks && session_.config().capacity.max_patches > 0;
   if (!outputs_.open(options_.out, options_.tracks, patches, info.knows_truth, options_.relative > 0,
@@ -138,6 +138,7 @@ bool Run::open(std::string& error, int& code) {
     }
     records_itself_ = source_.record_to(recorder_);
   }
+  code = kExitRun;
   if (!imu_.start(error)) {
     return false;
   }
@@ -591,7 +592,7 @@ int run(const Options& options) {
   std::signal(SIGTERM, on_interrupt);
   std::string error;
   if (!spares_inputs(options, error)) {
-    return fail(error);
+    return fail(error, kExitUsage);
   }
   FocalGuess guess;
   Options chosen = options;
