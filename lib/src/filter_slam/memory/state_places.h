@@ -16,9 +16,9 @@ namespace pf {
 class Archive;
 
 /// A place enters the state as a reference camera with the covariance of its record, and its points as points of that camera, so that what
-/// they share is a correlation. Records of several places, and one that enters again, have common errors, whose correlation no record holds. The n-th
-/// entry since the state began therefore has n (n + 1) times the covariance of its record, and a point that enters for the m-th time
-/// m (m + 1) times: for whatever correlation,
+/// they share is a correlation. Records of several places, and one that enters again, have common errors, and no record holds their
+/// correlation. The n-th entry since the state began therefore has n (n + 1) times the covariance of its record, and a point that enters
+/// for the m-th time m (m + 1) times: for whatever correlation,
 ///
 ///   C <= diag(C_1 / w_1, C_2 / w_2, ...)   where  sum w_n <= 1,   w_n = 1 / (n (n + 1))
 ///

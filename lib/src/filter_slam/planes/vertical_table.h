@@ -12,8 +12,8 @@ namespace pf {
 
 class Archive;
 
-/// Planes that the caller states to be vertical (lib/docs/theory/inertial.md). How far a plane is from vertical is a constant, so stating it
-/// again adds no information.
+/// Planes that the caller states to be vertical (lib/docs/theory/inertial.md). How far a plane is from vertical is a constant, so stating
+/// it again adds no information.
 class VerticalTable {
  public:
   VerticalTable(Filter& filter, const Map& map) : filter_(filter), map_(map) {}

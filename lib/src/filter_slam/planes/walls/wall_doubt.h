@@ -9,8 +9,8 @@
 
 namespace pf {
 
-/// Decides when a wall of the plan is rejected, and when it is accepted again (lib/docs/theory/walls.md). Keeps nothing; constructed where it
-/// is used.
+/// Decides when a wall of the plan is rejected, and when it is accepted again (lib/docs/theory/walls.md). Keeps nothing; constructed where
+/// it is used.
 class WallDoubt {
  public:
   WallDoubt(const Settings& settings, Filter& filter, Map& map, const Frame& frame, FeatureKeeper& features,
