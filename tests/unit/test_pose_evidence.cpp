@@ -55,12 +55,15 @@ void test_probability_of_all_shares_should_sum_to_one() {
   FindShare share;
   share.init();
   constexpr int kSearched = 12;
-  Scalar sum = 0, ways = 1;
-  for (int k = 0; k <= kSearched; ++k) {
-    sum += ways * std::exp(share.log_probability(kSearched, k));
-    ways *= static_cast<Scalar>(kSearched - k) / static_cast<Scalar>(k + 1);
+  for (const Scalar as_sharp : {Scalar(1), Scalar(0.3)}) {
+    share.begin_frame(as_sharp);
+    Scalar sum = 0, ways = 1;
+    for (int k = 0; k <= kSearched; ++k) {
+      sum += ways * std::exp(share.log_probability(kSearched, k));
+      ways *= static_cast<Scalar>(kSearched - k) / static_cast<Scalar>(k + 1);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, static_cast<double>(1), static_cast<double>(sum));
   }
-  TEST_ASSERT_DOUBLE_WITHIN(1e-5, static_cast<double>(1), static_cast<double>(sum));
 }
 
 /// In ellipses as wide as those of features whose depths are open, so that all that is found passes their gates.
@@ -135,6 +138,48 @@ void test_alike_views_should_take_from_what_agrees() {
   TEST_ASSERT_TRUE(pose_evidence(all, share, alike) > 0);
 }
 
+/// Where all points in view are searched for, a tenth of them is what wrong places have in common with the right one; in a less sharp image
+/// it is as likely to be all that is left of the right one.
+void test_a_common_part_should_speak_against_a_pose_in_sharp_images_only() {
+  SeededRandom random(303);
+  FindShare share;
+  share.init();
+  for (int frame = 0; frame < 20; ++frame) share.learn(200, 160);
+  PoseConsensus few = consensus_of(random, 150, 17, 15, false);
+  few.log_density = 17 * log_normal_density(2, 0, 1);
+  TEST_ASSERT_TRUE(pose_evidence(few, share, AlikeShare()) > -1);
+  few.of_all_points = true;
+  TEST_ASSERT_TRUE(pose_evidence(few, share, AlikeShare()) < -3);
+  share.begin_frame(Scalar(0.01));
+  TEST_ASSERT_DOUBLE_WITHIN(0.3, 0.0, static_cast<double>(pose_evidence(few, share, AlikeShare())));
+  share.begin_frame(1);
+  few.is_elsewhere = true;  // how much is found from there is open as well
+  TEST_ASSERT_DOUBLE_WITHIN(0.3, 0.0, static_cast<double>(pose_evidence(few, share, AlikeShare())));
+  PoseConsensus most = consensus_of(random, 150, 100, 15, false);
+  most.of_all_points = true;
+  most.log_density = 100 * log_normal_density(2, 0, 1);
+  TEST_ASSERT_TRUE(pose_evidence(most, share, AlikeShare()) > 5);
+}
+
+void test_shares_elsewhere_should_sum_to_their_probabilities() {
+  PoseConsensus consensus;
+  consensus.searched = 12;
+  AlikeShare alike;
+  alike.init();
+  alike.note(true);
+  for (const bool of_all : {false, true}) {
+    consensus.of_all_points = of_all;
+    Scalar sum = 0, ways = 1;
+    for (int k = 0; k <= consensus.searched; ++k) {
+      consensus.inliers = k;
+      sum += ways * std::exp(log_share_elsewhere(consensus, alike));
+      ways *= static_cast<Scalar>(consensus.searched - k) / static_cast<Scalar>(k + 1);
+    }
+    const Scalar expected = std::exp(alike.log_share()) + (of_all ? tuning::common_part::kShare : Scalar(0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, static_cast<double>(expected), static_cast<double>(sum));
+  }
+}
+
 /// Any share of n: the sum over the ways to find k, and over k.
 void test_any_share_should_sum_to_one() {
   constexpr int kSearched = 12;
@@ -159,6 +204,8 @@ int main() {
   RUN_TEST(test_misses_should_say_less_once_frames_have_missed_much);
   RUN_TEST(test_few_of_many_should_be_another_place_however_well_they_agree);
   RUN_TEST(test_alike_views_should_take_from_what_agrees);
+  RUN_TEST(test_a_common_part_should_speak_against_a_pose_in_sharp_images_only);
+  RUN_TEST(test_shares_elsewhere_should_sum_to_their_probabilities);
   RUN_TEST(test_any_share_should_sum_to_one);
   return UNITY_END();
 }

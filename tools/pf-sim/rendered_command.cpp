@@ -173,12 +173,13 @@ void print_runs(const json& j) {
       number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"), 100 * number("/tracked_share"),
       100 * number("/coasting_share"), number("/track_length"));
   std::printf(
-      "planes: %g true (NEES %.1f, median %.1f, 3 dof), %g false, %g twice; of %g surfaces seen well %g found, %g "
+      "planes: %g true (NEES %.1f, median %.1f, 3 dof), %g false (%g of them as far off as they say), %g twice; of %g "
+      "surfaces seen well %g found, %g "
       "within 2 deg and 2 cm (worst %.2f "
       "deg, "
       "%.3f m), %g with a good outline (least covered %.2f, most overstepped %.2f)\n",
       number("/planes/true"), number("/planes/nees_mean"), number("/planes/nees_median"), number("/planes/false"),
-      number("/planes/duplicate"), number("/planes/wanted"), number("/planes/found"),
+      number("/planes/explained"), number("/planes/duplicate"), number("/planes/wanted"), number("/planes/found"),
       number("/planes/within_2_deg_2_cm"), number("/planes/worst_normal_deg"), number("/planes/worst_offset_m"),
       number("/planes/outlined"), number("/planes/least_covered"), number("/planes/most_overstep"));
   std::printf(

@@ -16,6 +16,8 @@ constexpr int kStride = 2;             // pixels
 constexpr double kCell = 0.05;         // [m]
 constexpr double kMatchDeg = 6;        // a plane that is further off is no estimate of the surface
 constexpr double kMatchOff = 0.06;     // likewise [m]
+constexpr double kExplained = 16.27;   // NEES that one right plane in a thousand exceeds, 3 degrees of freedom
+constexpr double kExplainedDeg = 20;   // however uncertain: a plane that is further off says nothing of the surface
 constexpr double kMatchOverlap = 0.3;  // of its outline must lie on what was seen of it
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
@@ -126,25 +128,43 @@ void SurfaceWatch::overlap(const pf_plane_t& plane, const Surface& s, PlaneVerdi
   if (all == 0 || all - beyond < kMatchOverlap * all) verdict->surface = -1;
 }
 
+/// A plane of the map against one surface, wherever that is.
+PlaneVerdict SurfaceWatch::compare(const pf_plane_t& plane, std::size_t k) const {
+  const Surface& s = surfaces_[k];
+  const Vec3 n = vec(plane.normal_W), middle = middle_of(plane);
+  PlaneVerdict one;
+  one.id = static_cast<std::int32_t>(plane.id);
+  one.points = plane.points;
+  one.area_m2 = static_cast<float>(plane.area);
+  one.surface = static_cast<std::int32_t>(k);
+  const double sine = n.cross(s.n).norm();
+  one.normal_deg = static_cast<float>(std::atan2(sine, std::fabs(n.dot(s.n))) / kDegree);
+  one.offset_m = static_cast<float>(std::fabs(s.n.dot(middle) - s.d));
+  const double side = n.dot(s.n) < 0 ? -1 : 1;
+  one.nees = static_cast<float>(normalised_plane_error(plane, s.n * side, s.d * side));
+  return one;
+}
+
 PlaneVerdict SurfaceWatch::judge_one(const pf_plane_t& plane) const {
   PlaneVerdict best;
   best.id = static_cast<std::int32_t>(plane.id);
   best.points = plane.points;
   best.area_m2 = static_cast<float>(plane.area);
-  const Vec3 n = vec(plane.normal_W), middle = middle_of(plane);
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    const Surface& s = surfaces_[k];
-    PlaneVerdict one = best;
-    one.surface = static_cast<std::int32_t>(k);
-    const double sine = n.cross(s.n).norm();
-    one.normal_deg = static_cast<float>(std::atan2(sine, std::fabs(n.dot(s.n))) / kDegree);
-    one.offset_m = static_cast<float>(std::fabs(s.n.dot(middle) - s.d));
-    const double side = n.dot(s.n) < 0 ? -1 : 1;
-    one.nees = static_cast<float>(normalised_plane_error(plane, s.n * side, s.d * side));
-    if (one.normal_deg > static_cast<float>(kMatchDeg) || one.offset_m > static_cast<float>(kMatchOff)) continue;
-    overlap(plane, s, &one);
-    if (one.surface >= 0 && (best.surface < 0 || one.offset_m < best.offset_m)) best = one;
+    PlaneVerdict one = compare(plane, k);
+    const bool is_near =
+        one.normal_deg <= static_cast<float>(kMatchDeg) && one.offset_m <= static_cast<float>(kMatchOff);
+    const bool is_explained = one.nees >= 0 && one.nees <= static_cast<float>(kExplained) &&
+                              one.normal_deg <= static_cast<float>(kExplainedDeg);
+    if (!is_near && !is_explained) continue;
+    overlap(plane, surfaces_[k], &one);
+    if (one.surface < 0) continue;
+    if (!is_near)
+      best.explained_by = one.surface;
+    else if (best.surface < 0 || one.offset_m < best.offset_m)
+      best = one;
   }
+  if (best.surface >= 0) best.explained_by = -1;
   return best;
 }
 

@@ -14,6 +14,7 @@ namespace pfsim {
 struct PlaneVerdict {
   std::int32_t id = 0, points = 0;
   std::int32_t surface = -1;           ///< -1: no surface lies there
+  std::int32_t explained_by = -1;      ///< where none does: a surface that is as far off as the plane's covariance says
   float normal_deg = 0, offset_m = 0;  ///< of the plane from the surface, the offset at the middle of the outline
   float nees = 0;     ///< of the plane against the surface, 3 degrees of freedom; negative: its covariance is none
   float area_m2 = 0;  ///< of the outline
@@ -53,6 +54,7 @@ class SurfaceWatch {
   };
 
   PlaneVerdict judge_one(const pf_plane_t& plane) const;
+  PlaneVerdict compare(const pf_plane_t& plane, std::size_t k) const;
   void overlap(const pf_plane_t& plane, const Surface& surface, PlaneVerdict* verdict) const;
 
   const pf_sim_t* sim_;

@@ -28,6 +28,7 @@ json run_json(const PlanesVerdict& run) {
   for (int k = 0; k < run.planes; ++k) {
     const PlaneVerdict& p = run.plane[k];
     json one = {{"id", p.id}, {"points", p.points}, {"area_m2", number(p.area_m2)}, {"surface", p.surface}};
+    if (p.explained_by >= 0) one["explained_by"] = p.explained_by;
     if (p.surface >= 0) {
       one["normal_deg"] = number(p.normal_deg);
       one["offset_m"] = number(p.offset_m);
@@ -48,7 +49,7 @@ json run_json(const PlanesVerdict& run) {
 }  // namespace
 
 json planes_json(const std::vector<const PlanesVerdict*>& runs) {
-  int true_planes = 0, false_planes = 0, duplicates = 0, wanted = 0, found = 0, close = 0, outlined = 0;
+  int true_planes = 0, false_planes = 0, explained = 0, duplicates = 0, wanted = 0, found = 0, close = 0, outlined = 0;
   double worst_normal = 0, worst_offset = 0, least_covered = 1, most_overstep = 0;
   double nees_sum = 0;
   std::vector<double> nees;
@@ -57,6 +58,7 @@ json planes_json(const std::vector<const PlanesVerdict*>& runs) {
     for (int k = 0; k < run->planes; ++k) {
       const PlaneVerdict& p = run->plane[k];
       (p.surface >= 0 ? true_planes : false_planes) += 1;
+      explained += p.explained_by >= 0;
       if (p.surface < 0 || p.nees < 0) continue;
       nees.push_back(static_cast<double>(p.nees));
       nees_sum += nees.back();
@@ -82,6 +84,7 @@ json planes_json(const std::vector<const PlanesVerdict*>& runs) {
   }
   return {{"true", true_planes},
           {"false", false_planes},
+          {"explained", explained},
           {"duplicate", duplicates},
           {"wanted", wanted},
           {"found", found},

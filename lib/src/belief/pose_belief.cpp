@@ -13,6 +13,7 @@ void PoseBelief::init() {
   share_.init();
   alike_.init();
   lens_ = LensBelief();
+  sharpness_.init();
   log_odds_ = predicted_ = least_ = kAnew;
   is_noted_ = false;
 }
@@ -26,6 +27,13 @@ void PoseBelief::begin_frame(double dt_s) {
   log_odds_ = predicted_;
   is_noted_ = false;
   lens_.begin_frame();
+  sharpness_.note_none();
+  share_.begin_frame(1);
+}
+
+void PoseBelief::note_sharpness(Scalar log_sharpness) {
+  sharpness_.note(log_sharpness);
+  share_.begin_frame(sharpness_.as_sharp());
 }
 
 void PoseBelief::begin_elsewhere() {
@@ -55,6 +63,7 @@ void PoseBelief::use(Scalar log_odds, const PoseConsensus& consensus) {
   if (is_enough(log_odds)) least_ = kAnew;
   is_noted_ = true;
   share_.learn(consensus.searched, consensus.inliers);
+  if (consensus.searched > 0) sharpness_.learn();
 }
 
 bool PoseBelief::is_enough(Scalar log_odds) { return log_odds >= kTracked; }

@@ -3,6 +3,7 @@
 #include "base/scalar.h"
 #include "belief/lens_belief.h"
 #include "belief/pose_evidence.h"
+#include "belief/sharpness_belief.h"
 
 /// Whether the pose is right: its log-odds, from frame to frame.
 
@@ -22,6 +23,9 @@ class PoseBelief {
   void init();
   /// Begins a frame, dt_s after the one before.
   void begin_frame(double dt_s);
+
+  /// How sharp the frame's image is (vision/sharpness.h).
+  void note_sharpness(Scalar log_sharpness);
 
   /// A map begins after a loss: the log-odds begin at kElsewhere, so that several images must agree on the motion between them.
   void begin_elsewhere();
@@ -67,6 +71,7 @@ class PoseBelief {
   FindShare share_;
   AlikeShare alike_;
   LensBelief lens_;
+  SharpnessBelief sharpness_;
   Scalar log_odds_ = 0, predicted_ = 0;
   Scalar least_ = 0;       ///< of a prediction
   bool is_noted_ = false;  ///< in this frame

@@ -28,7 +28,10 @@ Scalar log_normal_density(Scalar nis, Scalar log_det, int n) {
   return -(nis + log_det) / 2 - static_cast<Scalar>(n) * kLogTwoPi;
 }
 
-void FindShare::init() { mean_ = tuning::find_share::kPrior; }
+void FindShare::init() {
+  mean_ = tuning::find_share::kPrior;
+  as_sharp_ = 1;
+}
 
 void FindShare::learn(int searched, int inliers) {
   using namespace tuning::find_share;
@@ -39,7 +42,10 @@ void FindShare::learn(int searched, int inliers) {
 
 Scalar FindShare::log_probability(int searched, int inliers) const {
   const Scalar a = tuning::find_share::kWeight * mean_, b = tuning::find_share::kWeight - a;
-  return log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
+  const Scalar usual = log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
+  if (as_sharp_ >= Scalar(1)) return usual;
+  const Scalar any = log_any_share(searched, inliers);
+  return any + std::log(1 - as_sharp_ + as_sharp_ * std::exp(usual - any));
 }
 
 Scalar FindShare::in_frame(int searched, int inliers) const {
@@ -47,18 +53,36 @@ Scalar FindShare::in_frame(int searched, int inliers) const {
   return (kWeight * mean_ + static_cast<Scalar>(inliers)) / (kWeight + static_cast<Scalar>(searched));
 }
 
+namespace {
+
+/// ln P(k of n found) where the pose is right.
+Scalar log_found(const PoseConsensus& consensus, const FindShare& share) {
+  return consensus.is_elsewhere ? log_any_share(consensus.searched, consensus.inliers)
+                                : share.log_probability(consensus.searched, consensus.inliers);
+}
+
+}  // namespace
+
 Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share) {
-  return share.log_probability(consensus.searched, consensus.inliers) + consensus.log_density - consensus.log_chance;
+  return log_found(consensus, share) + consensus.log_density - consensus.log_chance;
 }
 
 Scalar log_any_share(int searched, int inliers) {
   return log_rising(1, inliers) + log_rising(1, searched - inliers) - log_rising(2, searched);
 }
 
+Scalar log_share_elsewhere(const PoseConsensus& consensus, const AlikeShare& alike) {
+  using namespace tuning::common_part;
+  const int found = consensus.inliers, missed = consensus.searched - found;
+  const Scalar any = log_any_share(consensus.searched, found);
+  if (!consensus.of_all_points) return any + alike.log_share();
+  const Scalar few = log_rising(1, found) + log_rising(kFew, missed) - log_rising(1 + kFew, consensus.searched);
+  return any + std::log(std::exp(alike.log_share()) + kShare * std::exp(few - any));
+}
+
 Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike) {
   const Scalar against_chance = evidence_against_chance(consensus, share);
-  const Scalar against_alike = share.log_probability(consensus.searched, consensus.inliers) -
-                               log_any_share(consensus.searched, consensus.inliers) - alike.log_share();
+  const Scalar against_alike = log_found(consensus, share) - log_share_elsewhere(consensus, alike);
   const Scalar least = std::min(against_chance, against_alike);
   return least - std::log(1 + std::exp(least - std::max(against_chance, against_alike)));
 }

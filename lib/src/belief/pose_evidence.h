@@ -17,6 +17,9 @@ struct PoseConsensus {
   Scalar log_chance = 0;     ///< sum of log_chance_density() over the inliers
   Scalar log_zoom = 0;       ///< ln of the focal length over the calibrated one, by the inliers' pixels
   Scalar lens_evidence = 0;  ///< lens_evidence() of the pixels; 0: they do not measure it
+  bool of_all_points =
+      false;  ///< every point in view was searched for, so that wrong places share some with the right one
+  bool is_elsewhere = false;  ///< the pose is not the predicted one: how much earlier frames found says nothing of it
 };
 
 /// ln of the density with which a search of this area finds something where its feature is not [ln px^-2].
@@ -28,15 +31,18 @@ Scalar log_chance_density(Scalar searched_px2);
 Scalar log_normal_density(Scalar nis, Scalar log_det, int n);
 
 /// Probability that a feature in view is found. It belongs to the image, not to the feature, since smear hides all alike. A frame's own
-/// share therefore counts more than that of earlier ones: the prior is Beta(kWeight m, kWeight (1 - m)) about their mean m.
+/// share therefore counts more than that of earlier ones: in an image that is as sharp as theirs, with probability p, the prior is
+/// Beta(kWeight m, kWeight (1 - m)) about their mean m, and Beta(1, 1) in a less sharp one.
 class FindShare {
  public:
   void init();
+  /// as_sharp: p of the frame that begins (sharpness_belief.h).
+  void begin_frame(Scalar as_sharp) { as_sharp_ = as_sharp; }
   /// After a frame whose pose is used.
   void learn(int searched, int inliers);
   /// ln of the probability that just these `inliers` of `searched` features are found:
   ///
-  ///   ln B(a + k, b + n - k) - ln B(a, b),   a = kWeight m,  b = kWeight (1 - m)
+  ///   ln(p B(a + k, b + n - k) / B(a, b) + (1 - p) B(k + 1, n - k + 1)),   a = kWeight m,  b = kWeight (1 - m)
   Scalar log_probability(int searched, int inliers) const;
   /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
   Scalar in_frame(int searched, int inliers) const;
@@ -44,25 +50,30 @@ class FindShare {
   void carry(Archive& archive);  ///< base/archive.h
 
  private:
-  Scalar mean_ = 0;
+  Scalar mean_ = 0, as_sharp_ = 1;
 };
 
 /// ln of the ratio of the likelihoods of this consensus: of a right pose, and of a wrong one whose finds are all chance.
 ///
 ///   E_c = ln P(k of n found) + ln N(r; 0, S) - sum over the inliers of ln c_i
 ///
-/// What was found elsewhere is chance under both and cancels, as does what was missed but for P.
+/// What was found elsewhere is chance under both and cancels, as does what was missed but for P. Of a pose that is not the predicted one,
+/// any share may be found: P = log_any_share().
 Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share);
 
 /// ln of the probability that just these `inliers` of `searched` features are found where any share of them may be: ln B(k + 1, n - k + 1).
 Scalar log_any_share(int searched, int inliers);
 
-/// The same ratio, where a wrong pose may also be that of a place that looks like another one. What is found there agrees as well as in the
-/// right place; but how much of it is found may be anything, where of the right place most is:
+/// ln of the probability that just these `inliers` of `searched` features agree in a wrong place that has something in common with the
+/// right one, where they agree as well as there. A place that looks like it, one in s, gives any share of them. Where all points in view
+/// are searched for, a part that looks like a part (a poster, a row of tags, the same wall from elsewhere) gives a few:
 ///
-///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - ln B(k + 1, n - k + 1) - ln s
+///   ln(s B(k + 1, n - k + 1) + kShare B(k + 1, n - k + kFew) / B(1, kFew))
+Scalar log_share_elsewhere(const PoseConsensus& consensus, const AlikeShare& alike);
+
+/// The same ratio, where a wrong pose may also be in such a place:
 ///
-/// s: share of places that look like another one.
+///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - log_share_elsewhere()
 Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike);
 
 }  // namespace pf

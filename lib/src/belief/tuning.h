@@ -49,6 +49,22 @@ inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that fin
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
 }  // namespace chance
 
+/// Whether an image is as sharp as those before it (sharpness_belief.h). Sharpness is a natural logarithm.
+namespace sharpness_belief {
+inline constexpr Scalar kLessSharp = Scalar(0.1);     ///< share of images that are less sharp
+inline constexpr Scalar kRange = Scalar(2);           ///< of which they are less sharp; smear of 9 px: 0.4 to 0.6
+inline constexpr Scalar kPriorSpread = Scalar(0.2);   ///< sigma of images of one film: 0.03 to 0.26 in seven sequences
+inline constexpr Scalar kLeastSpread = Scalar(0.05);  ///< the same, at least
+inline constexpr Scalar kGain = Scalar(0.1);          ///< of a frame, in mean and variance
+}  // namespace sharpness_belief
+
+/// What a wrong place has in common with the right one where all points in view are searched for, measured on frames in random order
+/// (lib/docs/lab/2026-11/belief.md).
+namespace common_part {
+inline constexpr Scalar kShare = Scalar(0.5);  ///< of wrong places that have one
+inline constexpr Scalar kFew = Scalar(20);     ///< the part is Beta(1, kFew) of what is searched for: one in 21
+}  // namespace common_part
+
 /// Chance that a feature which is in view is found.
 namespace find_share {
 inline constexpr Scalar kPrior = Scalar(0.7);   ///< mean, before any frame

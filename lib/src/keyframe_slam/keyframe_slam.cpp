@@ -9,6 +9,7 @@
 #include "keyframe_slam/map/keyframe_upkeep.h"
 #include "keyframe_slam/start/tuning.h"
 #include "keyframe_slam/tracking/tuning.h"
+#include "vision/sharpness.h"
 
 namespace pf {
 namespace {
@@ -70,6 +71,9 @@ Status KeyframeSlam::push_frame(const ImageView* image, std::int64_t t_ns) {
     usable = search_.begin_frame(image);
   }
   if (!usable) return unusable_status(end_frame());
+  Scalar sharpness;
+  if (image != nullptr && measure_sharpness(search_.images().tracker().pyramid(), &sharpness))
+    tracking_.belief().note_sharpness(sharpness);
   track();
   return end_frame();
 }

@@ -29,11 +29,9 @@ void KeyframeTracking::measure(Scalar median_depth) {
     prior.follows = true;
     if (!measure_placed(prior, &pose, &information)) return measure_all(prior, median_depth);
   }
-  if (has_rows(map_.camera()))
-    correct_by_rows(prior, pose, information);
-  else
-    correct(pose, information);
-  measure_unplaced(median_depth);
+  const bool corrected =
+      has_rows(map_.camera()) ? correct_by_rows(prior, pose, information) : correct(pose, information);
+  if (corrected) measure_unplaced(median_depth);
 }
 
 /// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose.
@@ -96,7 +94,7 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
 
 /// Pixels at the frame's time were found with the predicted velocities; after a jerk the pose is found once more, with the velocities that
 /// the pose implies.
-void KeyframeTracking::correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information) {
+bool KeyframeTracking::correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information) {
   const int found = frame_.report.matches;
   for (int pass = 0; pass < kRowPasses; ++pass) {
     KeyframeMotion after = motion_;
@@ -108,12 +106,19 @@ void KeyframeTracking::correct_by_rows(const PosePrior& before, CameraPose pose,
     pose_.find(found, before, &pose, &information);  // the consensus of before counts
     break;
   }
-  correct(pose, information);
+  return correct(pose, information);
 }
 
-void KeyframeTracking::correct(const CameraPose& pose, const Mat6& information) {
+bool KeyframeTracking::correct(const CameraPose& pose, const Mat6& information) {
+  const KeyframeMotion before = motion_;
   PosePrior now;
-  if (apply(pose, information, &now)) mark(now);
+  if (!apply(pose, information, &now)) return false;
+  if (mark(now) >= settings_.min_inliers) {
+    accept_marked();
+    return true;
+  }
+  motion_.set_prediction(before.body(), before.covariance());
+  return false;
 }
 
 bool KeyframeTracking::apply(const CameraPose& pose, const Mat6& information, PosePrior* now) {
@@ -121,10 +126,10 @@ bool KeyframeTracking::apply(const CameraPose& pose, const Mat6& information, Po
   return correct_body(pose, information, &motion_, now);
 }
 
-/// Marks each match as inlier or outlier of the pose, within its own noise and that of the pose.
-void KeyframeTracking::mark(const PosePrior& at) {
+/// Marks each match as inlier or outlier of the pose, within its own noise and that of the pose. Returns the number of inliers.
+int KeyframeTracking::mark(const PosePrior& at) {
   const int found = frame_.report.matches;
-  const PosePrior now = prior_of(motion_);
+  int inliers = 0;
   for (int c = 0; c < found; ++c) {
     Match& match = search_.match(c);
     const Mat2& noise = search_.point(c).noise;
@@ -135,6 +140,18 @@ void KeyframeTracking::mark(const PosePrior& at) {
     match.nis = squared_distance(r, Mat2(noise + expected.spread));
     const Mat2 S = noise + NoiseModel::search() + expected.spread;
     if (squared_distance(r, S) > settings_.gate) continue;
+    match.status = MatchStatus::kInlier;
+    ++inliers;
+  }
+  return inliers;
+}
+
+void KeyframeTracking::accept_marked() {
+  const int found = frame_.report.matches;
+  const PosePrior now = prior_of(motion_);
+  for (int c = 0; c < found; ++c) {
+    Match& match = search_.match(c);
+    if (match.status != MatchStatus::kInlier) continue;
     frame_.report.nis += static_cast<double>(match.nis);
     frame_.report.nis_dof += 2;
     ++frame_.report.inliers;

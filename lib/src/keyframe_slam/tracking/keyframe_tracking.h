@@ -36,8 +36,9 @@ class KeyframeTracking {
   int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information, PoseConsensus* consensus);
   /// Removes the matches of the last measure_about(), before the frame is searched about another pose.
   void forget_searches() { frame_.forget_searches(); }
-  /// Updates the body with a pose that measure_about() returned, and marks the matches that agree with it.
-  void correct(const CameraPose& pose, const Mat6& information);
+  /// Updates the body with a pose that measure_about() returned, and accepts the matches that agree with it. False where fewer do than a
+  /// tracked frame needs: the body is as before.
+  bool correct(const CameraPose& pose, const Mat6& information);
   /// Updates the noise model with the residuals of this frame's inliers.
   void learn_noise();
 
@@ -45,9 +46,10 @@ class KeyframeTracking {
 
  private:
   int search_by_scouts(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving);
-  void correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information);
+  bool correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information);
   bool apply(const CameraPose& pose, const Mat6& information, PosePrior* now);
-  void mark(const PosePrior& at);
+  int mark(const PosePrior& at);
+  void accept_marked();
   void accept(const Vec2& pixel, Match* match);
   bool measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information);
   void measure_all(const PosePrior& prior, Scalar median_depth);

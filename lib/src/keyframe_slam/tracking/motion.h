@@ -31,7 +31,7 @@ class KeyframeMotion {
     data_.dw_C += dw_C;
   }
   void forget_control() { data_.dv_C = data_.dw_C = Vec3::Zero(); }
-  /// The body as something else has predicted it to the frame's time, in place of advance().
+  /// The body as something else has predicted it to the frame's time, in place of advance(); or as it was before a measurement.
   void set_prediction(const Body& body, const Covariance& P) {
     data_.body = body;
     data_.P = P;

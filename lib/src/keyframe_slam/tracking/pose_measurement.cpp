@@ -103,6 +103,7 @@ PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior
                                          const Mat6& information) const {
   PoseConsensus consensus;
   consensus.searched = frame_.report.attempts;
+  consensus.of_all_points = true;
   if (inliers == 0) return consensus;
   consensus.inliers = inliers;
   consensus.log_density = log_density(map_.camera(), &pose_.match(0), found, pose_.inliers(), prior, pose, information);

@@ -70,6 +70,7 @@ KeyframeRelocaliser::Tried KeyframeRelocaliser::try_pose(const PoseHypothesis& a
   Tried out;
   const PosePrior prior = {about.q_WC, about.p_W, about.P};
   out.found = measuring_.measure_about(prior, &out.pose, &out.information, &out.consensus) >= settings_.min_inliers;
+  out.consensus.is_elsewhere = true;
   const bool follows = before.is_set && log_so3(out.pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
                        (out.pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
   out.log_odds =
@@ -106,8 +107,12 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   proposal_ = tried.proposal(median_depth);
   const Scalar log_odds = std::min(tried.log_odds, belief_.most_elsewhere()) - against;
   if (!tried.found || !belief_.may_use(log_odds, tried.consensus)) return;
+  const KeyframeMotion coasting = motion_;
   motion_.set_pose_covariance(elsewhere.P);
-  measuring_.correct(tried.pose, tried.information);
+  if (!measuring_.correct(tried.pose, tried.information)) {
+    motion_.set_prediction(coasting.body(), coasting.covariance());
+    return;
+  }
   belief_.use(log_odds, tried.consensus);
   proposal_ = rival_ = PoseProposal();
 }
