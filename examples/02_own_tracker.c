@@ -4,7 +4,7 @@
  * library takes their pixels instead of images: pf_push_observations. A number that is new begins a feature, a known one
  * measures it again. Here forty points in front of the camera are projected by this program, with half a pixel of noise, while
  * the camera moves along a known path from a known first pose, so that the estimate can be held against the truth. Pixels
- * alone cannot tell the scale: here only the rough first speed and depth do, and the covariance says how little that is.
+ * alone do not measure the scale: here only the rough first speed and depth constrain it, and the covariance shows how little.
  */
 #include <math.h>
 #include <planefold/planefold.h>

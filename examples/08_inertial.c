@@ -1,7 +1,7 @@
 /* An inertial unit from rest: metres and gravity with nothing else known.
  *
- * With PF_MOTION_INERTIAL the samples of pf_push_imu move the camera. Hold it still for a second at first: that tells the library
- * where down is and what the gyro reads at rest, and from then on lengths are metres. Here a tracker of its own follows 24 points
+ * With PF_MOTION_INERTIAL the samples of pf_push_imu move the camera. Hold it still for a second at first: that measures the
+ * direction of gravity and the bias of the gyroscope, and from then on lengths are metres. Here a tracker of its own follows 24 points
  * while the unit lies still at 200 Hz; the config says how noisy the unit is, which only you know (lib/docs/theory/inertial.md).
  */
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Walls of a building plan: a plan that is roughly right, and pictures that say how it really is.
  *
- * Two textured walls meet in a corner. The program draws them as a moving camera sees them, and tells the library of both
- * with pf_add_wall, but as a plan has them that is wrong by some degrees and centimetres, and with how wrong it may be. The
+ * Two textured walls meet in a corner. The program draws them as a moving camera sees them, and adds both
+ * with pf_add_wall as a plan has them: wrong by some degrees and centimetres, with standard deviations of that size. The
  * first pose is known (pf_start_from_pose), since a plan is of use only in its own frame. Room for patches
  * (capacity.max_patches) lets whole pieces of a wall be followed beside points. In the end the program prints how far the
  * walls are from the truth, in the plan and as the library has them now with their standard deviations, and how far the

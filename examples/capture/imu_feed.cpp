@@ -287,7 +287,7 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
       recorder_.add(sample);
       offset_.add(sample);
     } else if (refused_++ == 0) {
-      notices_.add(imu_->name() + ": the library refused a sample: " + pf_status_text(status));
+      notices_.add(imu_->name() + ": the library rejected a sample: " + pf_status_text(status));
     }
   }
   recorder_.write(failure_);

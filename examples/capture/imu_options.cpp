@@ -52,9 +52,9 @@ void add_imu_options(CLI::App& app, Options& options) {
          "camera (the clock of the frames) or first-sample: the unit's first sample is as old as the first frame")
       ->check(CLI::IsMember({"camera", "first-sample"}))
       ->group(group);
-  app.add_option(
-         "--vertical", options.vertical_deg,
-         "degrees within which planes that are found to be vertical are told to be so, for walls that are built so")
+  app.add_option("--vertical", options.vertical_deg,
+                 "degrees within which planes that are found to be vertical are constrained to be so, for walls that "
+                 "are built so")
       ->check(number_in(0.01, 28.0))
       ->group(group);
   app.add_flag_callback(

@@ -38,12 +38,34 @@ bool read_whole(const std::string& path, std::string& bytes) {
   return count == 0 && size < kMaxBytes;
 }
 
+/// The first bytes of every saved map (lib/docs/reference/map_format.md).
+constexpr char kFirstBytes[] = "\x89PFMAP\r\n";
+
 }  // namespace
+
+std::string why_no_map_can_be_saved(const std::string& path) {
+  const std::string begin = "--save-map " + path + ": ";
+  struct stat entry {};
+  if (::stat(path.c_str(), &entry) == 0) {
+    if (S_ISDIR(entry.st_mode)) return begin + "is a folder; name a file";
+    std::string bytes;
+    const bool is_map = read_whole(path, bytes) && bytes.rfind(kFirstBytes, 0) == 0;
+    return is_map || entry.st_size == 0 ? "" : begin + "is there and is no saved map; name another file";
+  }
+  const size_t slash = path.find_last_of('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  if (::stat(folder.c_str(), &entry) != 0 || !S_ISDIR(entry.st_mode)) return begin + "there is no folder " + folder;
+  return ::access(folder.c_str(), W_OK) == 0 ? "" : begin + "the folder " + folder + " cannot be written";
+}
 
 bool MapFile::read(const std::string& path, std::string& error) {
   path_ = path;
   if (!path.empty() && !read_whole(path, bytes_)) {
-    error = path + ": " + std::strerror(errno);
+    error = path + ": " +
+            (errno == ENOENT   ? "no such saved map; check the path"
+             : errno == EISDIR ? "is a folder; a file that --save-map wrote is needed"
+             : errno == EFBIG  ? "is too large for a saved map"
+                               : std::strerror(errno));
     return false;
   }
   return true;
@@ -59,7 +81,7 @@ bool MapFile::load(pf_slam_t* slam, const std::vector<std::string>& log, std::st
   } else if (status == PF_ERROR_FULL) {
     error = path_ + ": has more places or planes than this run keeps; raise --max-places or --max-planes";
   } else if (status == PF_ERROR_STATE) {
-    error = path_ + ": a map says where the run starts, so that --start, --second-pose and --walls cannot";
+    error = path_ + ": the run starts in this map: leave --start, --second-pose and --walls away";
   } else if (status < PF_OK) {
     error = path_ + ": " + pf_status_text(status);
   }

@@ -15,6 +15,7 @@
 #include "checked_options.h"
 #include "focal_search.h"
 #include "imu.h"
+#include "map_file.h"
 #include "realtime.h"
 
 namespace pf::capture {
@@ -31,7 +32,9 @@ constexpr const char* kFooter =
     "map has moved, and truth.tum and truth_planes.json where the source knows them.\n"
     "Poses in a second map, which has a world of its own, go into trajectory_2.txt and so on.\n"
     "Exit code: 0 done, 1 the run failed, ended early, tracked nothing, or was lost at the end or most of the time,\n"
-    "2 the command line is wrong, or a file that it names beside the frames: calibration, start, walls, noise, mount.";
+    "2 the command line is wrong, or a file or folder that it names beside the frames: calibration, start, walls, "
+    "noise, mount,\n"
+    "map, --out, --record.";
 
 /// A whole number of at least this; CLI11's own checks spell out the largest double.
 CLI::Validator at_least(int64_t least) {
@@ -76,7 +79,7 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->check(at_least(0))
       ->group(group);
   app.add_option("--priority", options.priority, "real-time priority, 1 to 98 (needs the right to it)")
-      ->check(CLI::Range(1, 98))
+      ->check(whole_number_in(1, 98))
       ->group(group);
   app.add_option("--delay", options.delay_ms, "milliseconds added to every frame, as if the processor were slower")
       ->check(number_in(0.0, 10000.0))
@@ -297,7 +300,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   std::string lens = "auto";
   std::string masks = "none";
   std::string motion = "velocity";
-  std::string timestamps;
+  std::string timestamps, map_kind;
   std::vector<double> gravity;
   std::vector<std::string> taps, anchors;
   bool no_film = false;
@@ -347,14 +350,13 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "file of a saved map, in which the run begins lost, or with which it goes on as if it had not ended")
       ->check(not_empty());
   app.add_option("--save-map", options.save_map, "file for the map at the end, for --map")->check(not_empty());
-  app.add_option("--map-kind", options.map_kind,
+  app.add_option("--map-kind", map_kind,
                  "of --save-map: portable, or continue, with which a run of the same options goes on at the next frame")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, int32_t>{{"portable", PF_MAP_PORTABLE}, {"continue", PF_MAP_CONTINUE}}));
+      ->check(CLI::IsMember({"portable", "continue"}));
   app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)")
       ->check(not_empty());
   app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")
-      ->check(CLI::Range(0, 32));
+      ->check(whole_number_in(0, 32));
   app.add_flag("--no-points", no_points, "patches of walls alone");
   app.add_option("--withdraw-target-after", options.withdraw_target_after, "measure the target no more after N frames")
       ->check(at_least(0));
@@ -369,9 +371,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->expected(1, -1);
   app.add_flag("--there-and-back", options.there_and_back,
                "all frames forwards, then backwards; pf-eval --there-and-back compares the two poses of each image");
-  app.add_option(
-         "--relative", options.relative,
-         "write the motion over every N frames with its covariance (relative.csv); with truth, how honest it is")
+  app.add_option("--relative", options.relative,
+                 "write the motion over every N frames with its covariance (relative.csv); with truth, its NEES")
       ->check(at_least(1));
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
   app.add_option("--report-every", options.report_every_s, "seconds between refreshed report.json and map.ply")
@@ -393,7 +394,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->check(not_empty());
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks,
-               "write tracks.csv and planes.csv, every feature and plane in every frame; patches.csv likewise");
+               "write tracks.csv, planes.csv and patches.csv: every feature, plane and patch in every frame");
   app.add_flag("--quiet", options.quiet, "no progress line");
   const CLI::Option* given_backend =
       app.add_option("--backend", backend,
@@ -414,7 +415,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--motion-angular-acceleration", options.motion_angular_acceleration,
                  "the same of rotation, rad/s^2/sqrt(Hz) (2)")
       ->check(number_in(1e-9, 1e4));
-  const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
+  const CLI::Option* seed =
+      app.add_option("--seed", options.seed, "of a sim: source")->check(at_least(0))->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
   app.add_option("--swing", options.sim_swing,
@@ -425,7 +427,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->expected(1, -1);
   app.add_option("--max-features", options.max_features, "capacity of the map; of the window at least 50")
       ->check(whole_number_in(8, 1000));
-  app.add_option("--max-planes", options.max_planes, "likewise")->check(whole_number_in(1, 64));
+  app.add_option("--max-planes", options.max_planes, "planes in the map, walls among them")
+      ->check(whole_number_in(1, 64));
   app.add_option("--max-places", options.max_places,
                  "places that are kept, and saved, 0 to 200; the filter keeps some with --map and --save-map alone,\n"
                  "or with this")
@@ -440,9 +443,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option(
          "--window-keyframes", options.window_keyframes,
          "of the window: keyframes that are adjusted together during its start, 2 to 8; its points are --max-features")
-      ->check(CLI::Range(2, 8));
+      ->check(whole_number_in(2, 8));
   app.add_option("--window-fixed", options.window_fixed, "of the window: older keyframes held fixed then, 0 to 16")
-      ->check(CLI::Range(0, 16));
+      ->check(whole_number_in(0, 16));
   app.add_option("--timestamps", timestamps,
                  "times of frames: real (measured) or nominal (counted); as the calibration says")
       ->type_name("KIND");
@@ -509,6 +512,15 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     wrong = std::string(options.map.empty() ? "--save-map" : "--map") +
             " needs room for places, and --max-places 0 leaves none";
   }
+  if (wrong.empty() && !map_kind.empty() && options.save_map.empty()) {
+    wrong = "--map-kind is that of the map to save: add --save-map FILE";
+  }
+  if (wrong.empty() && no_gauge && backend == "window") {
+    wrong = "--plain-ekf is for --backend filter: the window is no EKF";
+  }
+  if (wrong.empty() && !options.save_map.empty()) {
+    wrong = why_no_map_can_be_saved(options.save_map);
+  }
   if (wrong.empty() && !options.map.empty() && options.start != "auto") {
     wrong = "--map and --start: a run in a saved map begins lost and finds itself; leave one of them away";
   }
@@ -549,6 +561,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     code = refuse(wrong);
     return Parsed::kExit;
   }
+  if (map_kind == "continue") options.map_kind = PF_MAP_CONTINUE;
   options.kernels = set->second;
   if (estimate != lens_names.end()) options.lens = estimate->second;
   options.masks = mask->second;

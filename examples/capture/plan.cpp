@@ -126,7 +126,7 @@ bool Plan::add_to(pf_slam_t* slam, std::string& error) {
   for (int32_t i = 0; i < walls_.count; ++i) {
     const pf_status_t status = pf_add_wall(slam, &walls_.wall[i].prior, &id_[static_cast<size_t>(i)]);
     if (status >= PF_OK) continue;
-    error = std::string("--walls: wall '") + walls_.wall[i].name + "' was refused: " + pf_status_text(status);
+    error = std::string("--walls: wall '") + walls_.wall[i].name + "' is rejected: " + pf_status_text(status);
     if (status == PF_ERROR_STATE)
       error =
           "--walls needs planes, and a start in the plan's frame: --start pose:FILE, or target:FILE with points or "

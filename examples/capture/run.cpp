@@ -121,7 +121,7 @@ bool Run::open(std::string& error, int& code) {
   if (!session_.open(options_, source_, imu_, error, code)) {
     return false;
   }
-  code = kExitRun;
+  code = kExitUsage;  // of folders that the command line names
   relative_.open(options_.relative, session_.target() != nullptr);
   const bool patches = options_.tracks && session_.config().capacity.max_patches > 0;
   if (!outputs_.open(options_.out, options_.tracks, patches, info.knows_truth, options_.relative > 0,
@@ -138,6 +138,7 @@ bool Run::open(std::string& error, int& code) {
     }
     records_itself_ = source_.record_to(recorder_);
   }
+  code = kExitRun;
   if (!imu_.start(error)) {
     return false;
   }
@@ -148,7 +149,7 @@ bool Run::open(std::string& error, int& code) {
   const std::string title = options_.title.empty() ? short_name(options_.source) : options_.title;
   show_.open(options_, session_, "planefold   " + title, outputs_.path("overlay.mp4"), info.rate_hz, notes);
   if (!place_thread(options_.processor, options_.priority)) {
-    notes.emplace_back("--cpu or --priority was refused by the system (needs root, or RLIMIT_RTPRIO)");
+    notes.emplace_back("--cpu or --priority: the system does not allow it (needs root, or RLIMIT_RTPRIO)");
   }
   for (const std::string& line : notes) {
     note(line);
@@ -591,7 +592,7 @@ int run(const Options& options) {
   std::signal(SIGTERM, on_interrupt);
   std::string error;
   if (!spares_inputs(options, error)) {
-    return fail(error);
+    return fail(error, kExitUsage);
   }
   FocalGuess guess;
   Options chosen = options;
@@ -606,7 +607,7 @@ int run(const Options& options) {
   }
   const std::unique_ptr<Source> source = open_source(chosen, error);
   if (source == nullptr) {
-    return fail(error, is_calibration_wrong(options) ? kExitUsage : kExitRun);
+    return fail(error, is_command_line_wrong(options) ? kExitUsage : kExitRun);
   }
   return Run(chosen, *source, guesses ? &guess : nullptr).go();
 }

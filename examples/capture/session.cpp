@@ -236,13 +236,13 @@ bool Session::begin(std::string& error) {
     return false;
   }
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
-    error = "--gravity: the library refused this direction";
+    error = "--gravity: the library rejected this direction";
     return false;
   }
   if (has_target_) {
     const pf_status_t status = pf_start_from_target(slam_, &target_);
     if (status < 0) {
-      error = "--start " + start_ + ": the target was refused: " + pf_status_text(status);
+      error = "--start " + start_ + ": the target is rejected: " + pf_status_text(status);
       return false;
     }
   }
@@ -254,14 +254,14 @@ bool Session::begin(std::string& error) {
     }
     const pf_status_t status = pf_start_from_pose(slam_, &pose_, velocity_covariance);
     if (status < 0) {
-      error = "--start " + start_ + ": the pose was refused: " + pf_status_text(status);
+      error = "--start " + start_ + ": the pose is rejected: " + pf_status_text(status);
       return false;
     }
   }
   if (has_second_pose_) {
     const pf_status_t status = pf_set_second_pose(slam_, second_pose_.t_ns, &second_pose_);
     if (status < 0) {
-      error = std::string("--second-pose: the pose was refused: ") +
+      error = std::string("--second-pose: the pose is rejected: ") +
               (status == PF_ERROR_RANGE ? "it lies nearer to the first place than its own sigma, and so tells no scale"
                                         : pf_status_text(status));
       return false;
@@ -306,7 +306,10 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   log_.frame = -1;
   view.ms = 1e-6 * static_cast<double>(steady_ns() - before);
   if (view.status < 0) {
-    error = std::string("the library refused it: ") + pf_status_text(view.status);
+    error = std::string("the library rejected it: ") + pf_status_text(view.status);
+    if (view.status == PF_ERROR_TIME && !map_file_.empty()) {
+      error += "; the map goes on after a later frame: leave out those of before with --skip N";
+    }
     return false;
   }
   pf_get_report(slam_, &view.report);

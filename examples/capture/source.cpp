@@ -2,6 +2,7 @@
 
 #include <planefold_platform/cameras.h>
 #include <planefold_platform/sequence.h>
+#include <planefold_platform/sim.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -190,8 +191,10 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
   return std::make_unique<LiveSource>(open_paced_camera(options, std::move(stored)), options, info);
 }
 
-bool is_calibration_wrong(const Options& options) {
+bool is_command_line_wrong(const Options& options) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
+  pf_sim_options_t scene;
+  if (kind == "sim" && pf_sim_options_default(options.source.c_str() + 4, &scene) != PF_OK) return true;
   const char* calibration = options.calibration.empty() ? nullptr : options.calibration.c_str();
   char message[PF_SEQUENCE_MESSAGE];
   if (kind == "images" || kind == "euroc" || kind == "tum") {

@@ -79,8 +79,9 @@ class Source {
 
 /// null: error is one line.
 std::unique_ptr<Source> open_source(const Options& options, std::string& error);
-/// Whether it is the calibration that a source cannot be opened for: the one that is given, or the calib.yaml in its folder.
-bool is_calibration_wrong(const Options& options);
+/// Whether the command line is why a source cannot be opened: there is no such scene, or a calibration is wrong, the one that is given or
+/// the calib.yaml in its folder.
+bool is_command_line_wrong(const Options& options);
 
 std::unique_ptr<Source> open_camera_source(const Options& options, std::string& error);
 

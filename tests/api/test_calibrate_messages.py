@@ -27,7 +27,7 @@ ALWAYS = [
     (["--source", "v4l2:/dev/none"], "/dev/none"),
     (["--source", "libcamera:none"], "libcamera"),
     (["--source", "images:grey", "--board", "10x7"], "COLUMNSxROWS:SQUARE_METRES"),
-    (["--source", "images:grey", "--target", "dots"], "dots not in {charuco,chessboard}"),
+    (["--source", "images:grey", "--target", "dots"], "'dots' is none of charuco, chessboard"),
     (["--print-target", "target.jpg"], "ends in .pdf or .png"),
     (["--print-target", "nowhere/target.pdf"], "nowhere/target.pdf: cannot be written"),
     (["--print-target", "target.pdf", "--board", "40x40:0.02"], "does not fit on"),

@@ -283,7 +283,7 @@ def test_sources(root):
     expect("NaN in a target", 2, ["nan.yaml", "'height'"], "--source", f"images:{path}", "--start",
            f"target:{root}/nan.yaml", *out)
     expect("missing target", 2, ["none.yaml"], "--source", f"images:{path}", "--start", f"target:{root}/none.yaml", *out)
-    expect("out is a file", 1, ["--out"], "--source", f"images:{path}", "--out", root / "file")
+    expect("out is a file", 2, ["--out"], "--source", f"images:{path}", "--out", root / "file")
     expect("calibration given", 2, ["other.yaml"], "--source", f"images:{path}", "--calib", f"{root}/other.yaml", *out)
 
 

@@ -24,8 +24,24 @@ TOOLS = [  # words, and what the line says
     (["package", "deb", "--jobs", "2.5"], "'2.5'"), (["package", "x86"], "aarch64, armhf or deb"),
     (["package"], "aarch64, armhf or deb"), (["update-golden", "--all"], "--all"),
     (["walls-from-geojson"], "FILE"), (["walls-from-obj", "x", "--sigma-offset", "0"], "0 is not above zero"),
+    (["package", "deb", "--build"], "--build needs a value"), (["demo", "--source"], "--source needs a value"), (["fuzz", "1", "--only"], "--only needs a value"),
+    (["count-decisions", "--list", "x"], "'x'"), (["draw-rooms", "--prnt"], "--prnt"), (["docs", "--out", "/dev/null/x"], "/dev/null/x"),
+    (["remake-results", "x"], "x: is no table"), (["remake-results", "--bin", "/dev"], "holds no pf-*"), (["sweep-tuning", "--seeds", "0", "x"], "--seeds"),
+    (["compare-trees"], "OLD"), (["plot-masoud"], "folder"), (["plot-gee2007"], "folder"),
     (["ray-sequence", "desk"], "OUT"), (["ray-sequence", "moon", "x"], "moon"), (["ray-sequence", "desk", "x", "--fov", "180"], "--fov 180"),
 ]
+# Words that nobody can mean: what is typed wrong is met by the name that is like it, and a number by its range.
+MISTAKES = {
+    "pf-capture": [(["--framse", "9"], "(is it --frames?)"), (["--calibration", "x"], "(is it --calib?)"), (["--frames"], "--frames needs a value"),
+                   (["--source", "sim:desk", "--source", "sim:room"], "--source is there more than once"), (["--gravity", "1,2"], "needs 3 numbers"),
+                   (["--gravity", "1,x,2"], "'1,x,2' cannot be read"), (["--map-kind", "both"], "'both' is none of portable, continue"),
+                   (["--patches", "99"], "from 0 to 32")],
+    "pf-calibrate": [(["--sorce", "x"], "(is it --source?)"), (["--views", "3"], "'3' is not a whole number from 6 to 200"), (["--size", "99"], "needs 2 numbers")],
+    "pf-sim": [(["rom"], "(is it room?)"), (["room", "--seds", "1"], "(is it --seeds?)"), (["room", "--seeds", "1.5"], "'1.5' is not a whole number"),
+               (["room", "--first-seed", "-1"], "at least 0"), (["room", "--fold-sigma", "-1"], "at least 0"), (["gee2007", "--sigma-step", "nan"], "'nan'"),
+               (["rendered", "--blur", "99"], "from 1 to 64"), (["rendered", "--sigma-px", "-1"], "at least 0"), (["vio", "--turn", "nan"], "'nan'"), ([], "which command?")],
+    "pf-bench": [(["frame", "--kernels", "fast"], "'fast' is none of auto"), (["frame", "--patches", "4"], "--walls"), (["frme"], "(is it frame?)")],
+}
 failures = []
 
 
@@ -49,6 +65,8 @@ def main():
     for program in programs:
         expect_refusal([], program)
         expect_refusal(["--nonsense"], program, "--nonsense")
+        for words, part in MISTAKES.get(program, []):
+            expect_refusal([part], program, *words)
         # Known before a run of hours, and not after it.
         for words in WRITE.get(program, []):
             expect_refusal([], program, *words)
@@ -67,7 +85,12 @@ def main():
             failures.append("pf-replay record writes over a file that is there")
     if "pf-sim" in programs:
         for words in (["room", "--seeds", "0"], ["room", "--lens", "x"], ["rendered", "--scene", "x"], ["rendered", "--frames", "0"],
-                      ["gee2007", "--jobs", "0"], ["render", "x", "--out", "/tmp/x"], ["box", "--cases", "x"], ["street", "--seeds", "0"]):
+                      ["gee2007", "--jobs", "0"], ["render", "x", "--out", "/tmp/x"], ["box", "--cases", "x"], ["street", "--seeds", "0"],
+                      # What does not belong together, or is no experiment.
+                      ["box", "--rate", "0"], ["street", "--rate", "0"], ["room", "--target-points", "5"], ["room", "--in-view", "9"],
+                      ["gee2007", "--hypotheses", "0"], ["gee2007", "--filter", "library", "--hypotheses", "9"], ["rendered", "--as-global"],
+                      ["rendered", "--focal-error", "0.1"], ["vio", "--fault-at", "3"], ["vio", "--scene", "room"], ["vio", "--no-imu", "--delay", "0.01"],
+                      ["vio", "--delay", "9"], ["vio", "--sigma-px", "0"]):
             result = said(BIN / "pf-sim", *words)
             if result.returncode != 2 or result.stderr.count("\n") != 1 or result.stdout:
                 failures.append(f"pf-sim {' '.join(words)}: code {result.returncode}, {result.stderr!r}")

@@ -41,3 +41,14 @@ with tempfile.TemporaryDirectory(prefix="planefold_") as scratch:
         print(said)
         if "to go on with" not in said:
             fail("pf-eval map does not say that the file is to go on with")
+    if capture(root / "late", "--backend", "window", "--frames", 2, "--map", saved, expect=1).find("leave out those of before with --skip") < 0:
+        fail("a map that goes on after a later frame: the line does not name --skip")
+    mine = root / "thesis.tex"
+    mine.write_text("years")
+    for option in ("--ply", "--json"):
+        said = subprocess.run([BIN / "pf-eval", "map", saved, option, mine], capture_output=True, text=True, check=False)
+        if said.returncode != 1 or said.stderr.count("\n") != 1 or mine.read_text() != "years":
+            fail(f"pf-eval map {option} over another file: {said.returncode}, {said.stderr}")
+    again = [subprocess.run([BIN / "pf-eval", "map", saved, "--json", root / "map.json"], check=False).returncode for _ in range(2)]
+    if again != [0, 0]:
+        fail("pf-eval map --json does not replace its own file")

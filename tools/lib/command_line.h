@@ -4,12 +4,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include "../../examples/capture/checked_options.h"
 
 namespace pf::tools {
 
@@ -52,7 +56,7 @@ inline CLI::Validator writable_file() {
       "");
 }
 
-/// Likewise of a folder.
+/// The same of a folder.
 inline CLI::Validator writable_folder() {
   return CLI::Validator(
       [](std::string& text) {
@@ -60,6 +64,29 @@ inline CLI::Validator writable_folder() {
         return can ? std::string() : "'" + text + "' is no folder that can be written; name another";
       },
       "");
+}
+
+/// Rejects numbers that CLI11 accepts and no option means: NaN, infinity, and below zero all but those of the options in with_sign (such as
+/// "--turn"). Of the options of an app and of its commands that have been added so far.
+inline void check_numbers(CLI::App& app, const std::vector<std::string>& with_sign = {}) {
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    const bool is_whole = type.rfind("INT", 0) == 0 || type.rfind("UINT", 0) == 0;
+    if (!is_whole && type.rfind("FLOAT", 0) != 0) continue;
+    const std::string name = "--" + option->get_single_name();
+    const bool has_sign = std::find(with_sign.begin(), with_sign.end(), name) != with_sign.end();
+    option->check(CLI::Validator(
+        [is_whole, has_sign](std::string& text) {
+          double value = 0.0;
+          const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+                                 (!is_whole || value == std::floor(value));
+          if (is_number && (has_sign || value >= 0.0)) return std::string();
+          return "'" + text + "' is not a " + (is_whole ? "whole " : "") + "number" +
+                 (has_sign ? "" : " of at least 0");
+        },
+        ""));
+  }
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) check_numbers(*command, with_sign);
 }
 
 /// Parses the command line of a program of this name. False where it must end, with code: 0 after --help or --version, else 2, after
@@ -71,10 +98,7 @@ inline bool parse_command_line(CLI::App& app, const std::string& name, int argc,
   } catch (const CLI::Success& done) {
     code = app.exit(done);
   } catch (const CLI::ParseError& error) {
-    // Where something is missing CLI11 does not say what was given in its place.
-    const std::vector<std::string> unknown = app.remaining(true);
-    const std::string what =
-        unknown.empty() ? error.what() : "'" + unknown.front() + "' is no command or option that is known here";
+    const std::string what = pf::capture::what_is_wrong(app, error);
     const bool commands = !app.get_subcommands([](CLI::App*) { return true; }).empty();
     std::fprintf(stderr, "%s: %s; see %s --help%s\n", name.c_str(), what.c_str(), name.c_str(),
                  commands ? (", and " + name + " COMMAND --help").c_str() : "");

@@ -15,6 +15,11 @@ need_number() {
   esac
 }
 
+# need_value OPTION VALUE   ends the command where VALUE is empty or missing
+need_value() {
+  [ -n "$2" ] || { echo "$0: $1 needs a value; see $0 --help" >&2; exit 2; }
+}
+
 # configure PRESET [-D...]   quiet unless it fails; compiles through ccache where that is installed
 configure() {
   local preset=$1 log

@@ -31,7 +31,8 @@ bool load_sim(const std::string& scene, const std::string& start, int limit, Fra
 #ifdef PF_BENCH_HAVE_SIM
   pf_sim_options_t options;
   if (pf_sim_options_default(scene.c_str(), &options) != PF_OK) {
-    message = "sim:" + scene + ": there is no such scene";
+    message = "sim:" + scene + ": there is no such scene; there are";
+    for (int32_t i = 0; pf_sim_scene_name(i) != nullptr; ++i) message += std::string(" ") + pf_sim_scene_name(i);
     return false;
   }
   options.frames = std::min(options.frames, limit);

@@ -97,7 +97,7 @@ class FrameSuite {
     const char* field = "";
     pf_memory_t memory{};
     if (pf_config_check(&config, &field) != PF_OK || pf_memory_query(&config, &memory) != PF_OK) {
-      message = frames.name + ": the configuration was refused for its field " + field;
+      message = frames.name + ": out of its range or not available here: " + field;
       return false;
     }
     const std::unique_ptr<void, void (*)(void*)> block(

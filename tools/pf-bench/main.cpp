@@ -26,13 +26,16 @@ int main(int argc, char** argv) {
                       "of stored frames: file with nine numbers a line, row by row the homography from the first "
                       "frame's pixels to this one's");
       sub->add_option("--hidden", options.hidden, "of drawn frames: share of the patch that something passes before")
-          ->check(CLI::Range(0.0, 0.9))
+          ->check(pf::capture::number_in(0.0, 0.9))
           ->capture_default_str();
       options.calibration.add_to(*sub);
     }
     if (has_patch || s->input == bench::Suite::kSeeds) {
-      sub->add_option("--seeds", options.seeds, "runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
-      sub->add_option("--frames", options.frames, "at most N of every run")->check(CLI::Range(2, 100000));
+      sub->add_option("--seeds", options.seeds, "runs of each kind")
+          ->check(pf::capture::whole_number_in(1, 1000))
+          ->capture_default_str();
+      sub->add_option("--frames", options.frames, "at most N of every run")
+          ->check(pf::capture::whole_number_in(2, 100000));
     } else if (s->input == bench::Suite::kSequences) {
       sub->add_option("--source", options.sources,
                       "video:FILE, images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
@@ -40,27 +43,32 @@ int main(int argc, char** argv) {
           "--start", options.start,
           "auto, pose:FILE, target:FILE or rectangle:WxH (default: target.yaml beside the images, else auto)");
       options.calibration.add_to(*sub);
-      sub->add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start");
+      CLI::Option* walls =
+          sub->add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start");
       sub->add_option("--patches", options.patches, "capacity for patches of these walls")
-          ->check(CLI::Range(0, 32))
+          ->needs(walls)
+          ->check(pf::capture::whole_number_in(0, 32))
           ->capture_default_str();
       sub->add_flag("--window", options.window, "the back end with keyframes");
       sub->add_flag(
           "--no-planes", [&](std::int64_t count) { options.planes = count == 0; }, "points only");
-      sub->add_option("--masks", options.masks, "map.masks: 0 none, 1 partial, 2 whole")->check(CLI::Range(0, 2));
+      sub->add_option("--masks", options.masks, "map.masks: 0 none, 1 partial, 2 whole")
+          ->check(pf::capture::whole_number_in(0, 2));
       sub->add_option("--features", options.features, "map.features_in_view (default: the library's)")
-          ->check(CLI::Range(0, 1000));
+          ->check(pf::capture::whole_number_in(0, 1000));
       sub->add_option("--passes", options.passes, "through every sequence")
-          ->check(CLI::Range(1, 1000))
+          ->check(pf::capture::whole_number_in(1, 1000))
           ->capture_default_str();
-      sub->add_option("--frames", options.frames, "at most N of every sequence")->check(CLI::Range(2, 100000));
+      sub->add_option("--frames", options.frames, "at most N of every sequence")
+          ->check(pf::capture::whole_number_in(2, 100000));
     } else {
       sub->add_option("--repetitions", options.repetitions, "interleaved repetitions; medians are reported")
-          ->check(CLI::Range(3, 100000))
+          ->check(pf::capture::whole_number_in(3, 100000))
           ->capture_default_str();
     }
     sub->add_option("--kernels", options.kernels,
-                    "kernel set: reference, portable, avx2, avx512, neon (default: the fastest)");
+                    "kernel set: reference, portable, avx2, avx512, neon (default: the fastest)")
+        ->check(CLI::IsMember({"auto", "reference", "portable", "avx2", "avx512", "neon"}));
     suites[sub] = s;
   }
   int code = 0;

@@ -83,7 +83,7 @@ Verdict judge_fit(const Fit& fit, const Board& board) {
     verdict.lacks.push_back(
         "hardly a view is slanted " +
         std::string(slanted(views, board, image, kAcross) < kMinSlantedViews ? "sideways" : "up or down") +
-        ", and only such tell the focal length: tilt the board by 30 to 50 degrees that way");
+        ", and only such views measure the focal length: tilt the board by 30 to 50 degrees that way");
   }
   if (fit.views.size() < kMinViews) {
     verdict.lacks.push_back("only " + std::to_string(fit.views.size()) + " views differ enough to be used: film " +

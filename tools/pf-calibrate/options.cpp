@@ -56,18 +56,18 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
          "there do not count;\nauto: mask.png beside the frames, where there is one; or none")
       ->capture_default_str();
   app.add_option("--views", options.views, "fit at most N views, the ones that differ most")
-      ->check(CLI::Range(6, 200))
+      ->check(pf::capture::whole_number_in(6, 200))
       ->capture_default_str();
   app.add_option("--look-at", options.look_at, "search at most N frames for the board, evenly over the source")
-      ->check(CLI::Range(6, 100000))
+      ->check(pf::capture::whole_number_in(6, 100000))
       ->capture_default_str();
   app.add_option("--seconds", options.seconds, "watch the camera for so long, or until Ctrl-C")
-      ->check(CLI::Range(5, 3600))
+      ->check(pf::capture::whole_number_in(5, 3600))
       ->capture_default_str();
   std::vector<int> size = {options.width, options.height};
   app.add_option("--size", size, "of the camera's pictures: width and height, those that will be tracked")
       ->expected(2)
-      ->check(CLI::Range(32, 4096))
+      ->check(pf::capture::whole_number_in(32, 4096))
       ->capture_default_str();
   app.add_option("--print-target", options.print_target,
                  "write the board to this PDF, at true size, and end; FILE.png: a picture of 10 pixels per millimetre");

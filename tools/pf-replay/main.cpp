@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   CLI::App* record = app.add_subcommand("record", "run the session and write what was accepted and estimated");
   record->add_option("file", file, "tape to write")->required();
   record->add_option("--frames", frames, "length of the session")
-      ->check(CLI::Range(1, 10000000))
+      ->check(pf::capture::whole_number_in(1, 10000000))
       ->capture_default_str();
   record->add_option("--seed", seed, "of the world, the motion and the noise")->capture_default_str();
   record->add_flag("--planes", planes, "fold points into planes");

@@ -264,12 +264,12 @@ void print_case(const char* name, const json& j) {
   if (!j["walls"].is_null())
     std::printf(
         "  walls: %.2f deg, %.1f mm in the plan; %.2f deg (worst %.2f), %.1f mm at the end, NEES %.1f (3 dof), %.1f "
-        "points, %g doubted\n",
+        "points, %g rejected\n",
         number("/walls/plan_angle_deg"), 1e3 * number("/walls/plan_offset_m"), number("/walls/angle_deg"),
         number("/walls/worst_angle_deg"), 1e3 * number("/walls/offset_m"), number("/walls/nees"),
         number("/walls/points"), number("/walls/doubted"));
   if (!j.contains("wrong_wall")) return;
-  std::printf("  the wrong wall: doubted in %g of %g runs", number("/wrong_wall/doubted_runs"), number("/runs"));
+  std::printf("  the wrong wall: rejected in %g of %g runs", number("/wrong_wall/doubted_runs"), number("/runs"));
   if (!j["wrong_wall"]["seen_before_s"].is_null())
     std::printf(", after %.2f s of view (worst %.2f)", number("/wrong_wall/seen_before_s/median"),
                 number("/wrong_wall/seen_before_s/worst"));
@@ -285,6 +285,8 @@ int run(Choices c) {
   if (!(c.box.gross >= 0 && c.box.gross <= 1)) return fail("--gross: a share from 0 to 1");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.box.frames < 1 || c.box.frames > 100000)
     return fail("--seeds, --jobs and --frames must be positive");
+  if (!(c.box.rate_hz > 0 && c.box.rate_hz <= 1000))
+    return fail("--rate must be above 0 and at most 1000 frames a second");
   Job job{&c, config_of(c), {}, nullptr, nullptr};
   for (const std::string& name : c.cases) {
     const auto* found =

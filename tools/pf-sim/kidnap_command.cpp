@@ -102,7 +102,7 @@ int run(const Choices& c) {
 void add_kidnap(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand(
-      "kidnap", "Black pictures, other places and random order on real frames: what is believed after them");
+      "kidnap", "Black pictures, other places and random order on real frames: which poses are accepted after them");
   command->add_option("--source", c->source, "images:DIR, euroc:DIR or tum:DIR")->required();
   c->calibration.add_to(*command);
   c->backend.add_to(*command);

@@ -184,7 +184,8 @@ void add_loop(CLI::App& app, int& result) {
   CLI::App* command = app.add_subcommand(
       "loop", "Once around a ring of corridors: the error when the camera is back, with places and without");
   c->backend.add_to(*command);
-  command->add_option("--max-places", c->places, "of the run that has some")->check(CLI::Range(1, 200));
+  command->add_option("--max-places", c->places, "of the run that has some")
+      ->check(pf::capture::whole_number_in(1, 200));
   command->add_option("--seeds", c->seeds, "how many walks");
   command->add_option("--first-seed", c->first_seed, "seed of the first walk");
   command->add_option("--frames", c->frames, "of each walk");

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   pfsim::add_loop(app, result);
   pfsim::add_vio(app, result);
   pfsim::add_templates(app, result);
+  pf::tools::check_numbers(app, {"--k1", "--focal-error", "--delay", "--turn"});
   int code = 0;
   return pf::tools::parse_command_line(app, "pf-sim", argc, argv, code) ? result : code;
 }

@@ -186,7 +186,8 @@ int run(const Choices& c, bool gee) {
   if (c.look != "inward" && c.look != "outward") return refuse("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
     return refuse("--seeds, --jobs and --frames must be positive");
-  if (c.relative < 0) return refuse("--relative is a number of frames, or 0");
+  if (c.target_points != 0 && c.target_points != 4 && c.target_points != 9 && c.target_points != 16)
+    return refuse("--target-points " + std::to_string(c.target_points) + ": write 4, 9 or 16");
   const std::string name = gee ? "gee2007" : "room";
   nlohmann::json out;
   out["experiment"] = name;
@@ -247,7 +248,7 @@ void add_common(CLI::App* command, Choices& c) {
       "taken as exact, consider or estimate");
   command->add_option("--lens-scale", c.lens_scale, "times those standard deviations");
   command->add_option("--linear-density", c.linear, "white acceleration [m/s^2/sqrt(Hz)], or walk [m/sqrt(s)]");
-  command->add_option("--angular-density", c.angular, "likewise [rad/s^2/sqrt(Hz)], [rad/sqrt(s)]");
+  command->add_option("--angular-density", c.angular, "the same of rotation [rad/s^2/sqrt(Hz)], [rad/sqrt(s)]");
   command->add_option("--relative-sigma", c.relative_sigma, "of the prior of inverse depth");
   command->add_option("--start-depth", c.start_depth, "of the prior [m]");
   command->add_option("--depth-from-map", c.depth_from_map, "0 or 1: new depths from the map's median");
@@ -263,13 +264,17 @@ void add_common(CLI::App* command, Choices& c) {
 
 void add_room(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
-  CLI::App* command = app.add_subcommand("room", "Honesty of the filter when all its models are true, or in a room");
+  CLI::App* command = app.add_subcommand("room", "NEES of the filter when all its models are true, or in a room");
   add_common(command, *c);
   command->add_option(
       "--layout", c->layout,
       "room: points of a 4 m room, half of them on its walls (default); model: depths drawn from the prior, no planes");
-  command->add_option("--in-view", c->in_view, "points that are kept in view (layout model)");
-  command->callback([c, &result] { result = run(*c, false); });
+  const CLI::Option* in_view =
+      command->add_option("--in-view", c->in_view, "points that are kept in view (layout model)");
+  command->callback([c, in_view, &result] {
+    const bool unused = in_view->count() > 0 && c->layout != "model";
+    result = unused ? refuse("--in-view is for --layout model") : run(*c, false);
+  });
 }
 
 void add_gee2007(CLI::App& app, int& result) {
@@ -283,7 +288,8 @@ void add_gee2007(CLI::App& app, int& result) {
   const auto paper = gee::add_paper_options(command);
   command->callback([c, paper, command, &result] {
     if (paper->filter == "library") {
-      result = run(*c, true);
+      const std::string unused = gee::given_paper_option(*command);
+      result = unused.empty() ? run(*c, true) : refuse(unused + " is an option of --filter paper");
       return;
     }
     const std::string look = command->count("--look") ? c->look : "";

@@ -159,14 +159,16 @@ void add_render(CLI::App& app, int& result) {
   command->add_option("scene", c->scene, scene_names())->required();
   command->add_option("--out", c->out, "folder to write")->required();
   command->add_option("--seed", c->seed, "of scene, path and noise");
-  command->add_option("--frames", c->frames, "how many (0: the scene's own)")->check(CLI::Range(0, 1000000));
+  command->add_option("--frames", c->frames, "how many (0: the scene's own)")
+      ->check(pf::capture::whole_number_in(0, 1000000));
   command->add_option("--camera", c->camera, "pinhole, radtan, equidistant or division");
   command->add_option("--width", c->width, "of the picture [px]; everything else scales with it")
-      ->check(CLI::Range(32, 4096));
+      ->check(pf::capture::whole_number_in(32, 4096));
   command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]")
       ->check(pf::capture::number_in(0.0, 50.0));
   command->add_option("--exposure", c->exposure_s, "[s]")->check(pf::capture::number_in(0.0, 1.0));
-  command->add_option("--blur", c->blur, "views averaged over the exposure")->check(CLI::Range(1, 64));
+  command->add_option("--blur", c->blur, "views averaged over the exposure")
+      ->check(pf::capture::whole_number_in(1, 64));
   command->add_option("--readout", c->readout, "rolling shutter, first to last row [s]")
       ->check(pf::capture::number_in(0.0, 0.2));
   command->add_option("--exposure-step", c->exposure_step, "factor by which gain jumps every two seconds")

@@ -285,7 +285,9 @@ int run(const Choices& c) {
     if (masks_by_name(masks) < 0) return refuse("--masks is none, partial or whole");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return refuse("--seeds, --jobs and --frames must be positive");
-  if (c.relative < 0) return refuse("--relative is a number of frames, or 0");
+  if (c.as_global && c.readout_s == 0) return refuse("--as-global is of rows that differ in time: add --readout S");
+  if (c.focal_error != 0 && c.lenses == std::vector<std::string>{"right"})
+    return refuse("--focal-error is of a wrong calibration: add --lens exact, consider or estimate");
   if (c.draw_lens && (c.focal_error != 0 || c.k1 != 0 || c.as_global || c.readout_s != 0))
     return refuse("--draw-lens draws the whole lens: leave --focal-error, --k1, --readout and --as-global away");
   RenderedOptions options;
@@ -297,7 +299,8 @@ int run(const Choices& c) {
   pf_target_t target;
   const bool possible = probe && pf_sim_target(probe, PF_TARGET_RECTANGLE, &target) == PF_OK;
   pf_sim_close(probe);
-  if (!possible) return refuse("an option is out of its range, or the scene has no target");
+  if (!possible)
+    return refuse("--scene " + c.scene + ": shows no target to start at, or --exposure is longer than a frame");
 
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.frames);
   const std::size_t count = seeds * options.variants.size();
@@ -338,7 +341,7 @@ int run(const Choices& c) {
 
 void add_rendered(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
-  CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
+  CLI::App* command = app.add_subcommand("rendered", "NEES and errors of the whole library on rendered frames");
   command->add_option("--scene", c->scene, "desk room corridor wall person exposure repeat bushes road");
   c->backend.add_to(*command);
   c->motion.add_to(*command);
@@ -350,25 +353,27 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--jobs", c->jobs, "processes at a time");
   command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
   command->add_option("--csv", c->csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
-  command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]");
-  command->add_option("--exposure", c->exposure_s, "[s]");
-  command->add_option("--blur", c->blur, "views averaged over the exposure");
+  command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]")
+      ->check(pf::capture::number_in(0.0, 50.0));
+  command->add_option("--exposure", c->exposure_s, "[s]")->check(pf::capture::number_in(0.0, 1.0));
+  command->add_option("--blur", c->blur, "views averaged over the exposure")
+      ->check(pf::capture::whole_number_in(1, 64));
   command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
-  command->add_flag("--as-global", c->as_global, "the filter knows nothing of the readout, for comparison");
+  command->add_flag("--as-global", c->as_global, "the filter takes the shutter as global, for comparison");
   command->add_option(
       "--lens", c->lenses,
       "one or more: right, or with a wrong calibration that the library takes as exact, considers or estimates");
   command->add_option("--masks", c->masks, "one or more of map.masks: none, partial, whole");
   command->add_option("--focal-error", c->focal_error, "of a wrong calibration, relative");
   command->add_flag("--draw-lens", c->draw_lens,
-                    "each run's true lens is drawn from the prior (1 %, centre 1 % of the width, k1 0.05), which only "
-                    "lens right is told");
+                    "each run's true lens is drawn from the prior (1 %, centre 1 % of the width, k1 0.05); only lens "
+                    "right has its numbers");
   command->add_option("--k1", c->k1, "radial distortion of the camera, which a wrong calibration does not name");
   command->add_option("--relative", c->relative, "frames of a window over which the motion is judged, 0: none");
   command->add_flag("--no-planes", c->no_planes, "points only, for comparison");
   command->add_option("--max-features", c->max_features, "of the map; 0: the library's default");
-  command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance, likewise");
-  command->add_option("--max-planes", c->max_planes, "likewise");
+  command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance; 0: the library's default");
+  command->add_option("--max-planes", c->max_planes, "planes of the map; 0: the library's default");
   command->add_option("--sigma-px", c->sigma_pixels,
                       "one or more: the filter's own floor of a match's noise [px]; 0: its default");
   command->callback([c, &result] { result = run(*c); });

@@ -167,7 +167,7 @@ void print_case(const char* name, const json& j) {
   if (number("/walls/count") > 0)
     std::printf(
         "  fronts that were seen: %g, %.2f deg, %.3f m in the plan; %.2f deg, %.3f m at the end, NEES %.1f (3 dof); %g "
-        "doubted, %g at any time\n",
+        "rejected, %g at any time\n",
         number("/walls/count"), number("/walls/plan_angle_deg"), number("/walls/plan_offset_m"),
         number("/walls/angle_deg"), number("/walls/offset_m"), number("/walls/nees"), number("/walls/doubted"),
         number("/walls/doubted_ever"));
@@ -179,6 +179,8 @@ int run(Choices c) {
   if (c.cases.empty()) c.cases = c.backend.is_window() ? std::vector<std::string>{"points"} : kDefaultCases;
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.street.frames < 1 || c.street.frames > 100000)
     return fail("--seeds, --jobs and --frames must be positive");
+  if (!(c.street.rate_hz > 0 && c.street.rate_hz <= 1000))
+    return fail("--rate must be above 0 and at most 1000 frames a second");
   Job job{&c, {}, nullptr, nullptr};
   for (const std::string& name : c.cases) {
     const auto* found =

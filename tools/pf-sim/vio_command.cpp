@@ -258,7 +258,7 @@ void print_vio(const json& j, bool with_imu) {
     std::printf(
         "  planes at the end: %g of the right class, %g wrong, %g unknown; wrong in %g frames, %g had one before "
         "gravity "
-        "was known; %g told to be vertical, %g refused\n",
+        "was known; %g constrained to be vertical, %g rejected\n",
         number("/planes/right"), number("/planes/wrong"), number("/planes/unknown"), number("/planes/wrong_in_frames"),
         number("/planes/before_gravity"), number("/planes/told_vertical"), number("/planes/refused"));
   if (j.contains("mount_error_deg"))
@@ -276,7 +276,7 @@ void print_vio(const json& j, bool with_imu) {
                 number("/mount_sigmas/max"), number("/mount_sigmas/median"));
   if (number("/doubt/runs") > 0)
     std::printf(
-        "  the unit was doubted in %g runs, first at %.2f s (at the latest %.2f), for %.1f s a run; %g maps a run\n",
+        "  the unit was rejected in %g runs, first at %.2f s (at the latest %.2f), for %.1f s a run; %g maps a run\n",
         number("/doubt/runs"), number("/doubt/at_s/median"), number("/doubt/at_s/max"), number("/doubt/mean_s"),
         number("/doubt/maps_per_run"));
   if (j.contains("frames_until_tracked_again"))
@@ -307,7 +307,8 @@ bool print_starts(const json& j) {
   const bool good = accepted >= 0.88 * number("/starts/good") && number("/starts/wrong") <= 0.05 * (accepted + poor) &&
                     poor <= 0.1 * (number("/starts/tried") - number("/starts/good"));
   std::printf(
-      "starts while it moves: yes for %g of %g, and for %g of %g that tell too little; %g yeses wrong; after %.2f s "
+      "starts while it moves: accepted in %g of %g, and in %g of %g whose motion does not show the scale; %g of them "
+      "wrong; after %.2f s "
       "(at the "
       "latest %.2f), scale off by %.2f %% (95 %%: %.2f, largest %.2f; NEES %.2f of 1), gravity by %.2f degrees (%.2f, "
       "%.2f)\nverdict: %s\n",
@@ -324,7 +325,7 @@ void print_fault(const json& j) {
   std::printf(
       "  fault %s: from 5 s after its beginning on %.1f %% tracked, %.1f %% in metres with pose NEES %.2f and error at "
       "most "
-      "%.1f of its sigma; %g samples refused\n",
+      "%.1f of its sigma; %g samples rejected\n",
       j.at("fault").at("name").get<std::string>().c_str(), 100 * number("/fault/tracked_after"),
       100 * number("/fault/metric_after"), number("/fault/nees_after"), number("/fault/worst_sigmas_after"),
       number("/fault/refused_samples"));
@@ -383,7 +384,7 @@ std::string choose_unit(Choices* c) {
   if (c->unit != "laboratory" && c->unit != "phone") return "--unit " + c->unit + ": write laboratory or phone";
   if (o.axes > 23) return "--axes is 0 to 23";
   if (o.axes >= 0 && (has(c->imu_exact, "mount") || has(c->estimate, "mount")))
-    return "--axes: nothing is told of them; leave mount out of --imu-exact and --estimate";
+    return "--axes are not given to the filter: leave mount out of --imu-exact and --estimate";
   o.phone = c->unit == "phone";
   if (!o.phone && !c->parts.empty()) return "--parts are those of --unit phone; add that";
   const std::string no_part = choose_parts(c->parts, &o.phone_parts);
@@ -411,6 +412,17 @@ std::string choose_unit(Choices* c) {
   return "";
 }
 
+/// An option that is given beside none that it belongs to, in one line; "": there is none.
+std::string unused_option(const CLI::App& command, const Choices& c) {
+  const auto given = [&](const char* name) { return command.count(name) > 0; };
+  if (given("--fault-at") && c.fault == name_of(VioFault::kNone)) return "--fault-at needs --fault";
+  for (const char* name : {"--scene", "--shake"})
+    if (given(name) && !c.vio.rendered) return std::string(name) + " is for --rendered";
+  for (const char* name : {"--delay", "--estimate", "--imu-exact", "--unit", "--axes", "--fault"})
+    if (given(name) && c.no_imu) return std::string(name) + " is of samples, which --no-imu leaves away";
+  return "";
+}
+
 int run(Choices c) {
   const VioOptions& o = c.vio;
   c.vio.window = c.backend.is_window();
@@ -420,7 +432,8 @@ int run(Choices c) {
   if (o.points < 50) return fail("--points is 50 or more");
   if (!(o.rate_hz >= 1 && o.rate_hz <= 200)) return fail("--rate is 1 to 200 frames a second");
   if (!(o.imu.rate_hz >= 20 && o.imu.rate_hz <= 2000)) return fail("--imu-rate is 20 to 2000 samples a second");
-  if (!(o.rest_s >= 0)) return fail("--rest is 0 seconds or more");
+  if (!(o.imu.delay_s >= -0.5 && o.imu.delay_s <= 0.5)) return fail("--delay is -0.5 to 0.5 seconds");
+  if (!(o.sigma_px >= 0.01 && o.sigma_px <= 10)) return fail("--sigma-px is 0.01 to 10 pixels");
   if (!(c.noise_scale > 0)) return fail("--noise-scale is above 0");
   for (int i = 0; i < static_cast<int>(VioFault::kCount); ++i)
     if (c.fault == name_of(static_cast<VioFault>(i))) c.vio.fault = static_cast<VioFault>(i);
@@ -446,7 +459,7 @@ int run(Choices c) {
         "--estimate readout: the rows of a camera that is known to take 10 ms less; add --readout S above 0.01");
   pf_sim_options_t scene;
   if (o.rendered && pf_sim_options_default(o.scene.c_str(), &scene) != PF_OK)
-    return fail("--scene " + o.scene + ": there is no such scene");
+    return fail("--scene: " + no_scene(o.scene));
   if (!(o.shake >= 0 && o.shake <= 10)) return fail("--shake is 0 to 10 times what a scene's hand does");
   if (!(c.vertical_deg >= 0 && c.vertical_deg < 28)) return fail("--vertical is 0 to 28 degrees");
   c.vio.sigma_vertical_rad = c.vertical_deg * 3.14159265358979 / 180;
@@ -460,7 +473,7 @@ int run(Choices c) {
   if (job.rows == nullptr || job.summaries == nullptr) return fail("no memory", 1);
   if (!in_processes(c.seeds, c.jobs, "vio", run_one, &job)) return fail("a run did not come to its end", 1);
   for (int i = 0; i < c.seeds; ++i)
-    if (job.summaries[i].done == 0) return fail("the library refused the config", 1);
+    if (job.summaries[i].done == 0) return fail("the library rejected the config of a run", 1);
   json out = summarise_vio(c, job.rows, job.summaries);
   out["experiment"] = "vio";
   out["settings"] = {{"seconds", o.seconds},
@@ -501,7 +514,7 @@ void add_vio(CLI::App& app, int& result) {
   // As on a hand: beside the camera, other axes.
   c->vio.imu.R_BC = pf::sim::rotation_exp({0.02, -0.03, 1.55});
   c->vio.imu.p_BC = {0.05, -0.02, 0.03};
-  CLI::App* command = app.add_subcommand("vio", "A hand-held walk with an inertial unit: honesty, scale and drift");
+  CLI::App* command = app.add_subcommand("vio", "A hand-held walk with an inertial unit: NEES, scale and drift");
   c->backend.add_to(*command);
   command->add_option("--seeds", c->seeds, "how many runs");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
@@ -511,29 +524,32 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--noise-scale", c->noise_scale, "times the noise of EuRoC's unit, of truth and filter");
   command->add_option("--delay", c->vio.imu.delay_s, "of frames against samples, known [s]");
   command
-      ->add_option(
-          "--estimate", c->estimate,
-          "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
-          "10 ms less than --readout, and estimated; scale: estimated from 1 %; the others as told. Without it "
-          "mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s, and the sensors' "
-          "scales and axes from 1 %")
+      ->add_option("--estimate", c->estimate,
+                   "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
+                   "10 ms less than --readout, and estimated; scale: estimated from 1 %; the others are given exactly. "
+                   "Without it "
+                   "mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s, and the sensors' "
+                   "scales and axes from 1 %")
       ->delimiter(',');
-  command->add_option("--imu-exact", c->imu_exact, "mount, delay, scale: as told, and not estimated")->delimiter(',');
-  command->add_option("--unit", c->unit,
-                      "laboratory; or phone: scales off by 1 %, axes by 0.5 %, three times the noise, 50 ms early with "
-                      "a jitter of 1 ms, 2 degrees off, and rows read out over 20 ms, of all of which nothing is told");
+  command->add_option("--imu-exact", c->imu_exact, "mount, delay, scale: given exactly, and not estimated")
+      ->delimiter(',');
+  command->add_option(
+      "--unit", c->unit,
+      "laboratory; or phone: scales off by 1 %, axes by 0.5 %, three times the noise, 50 ms early with "
+      "a jitter of 1 ms, 2 degrees off, and rows read out over 20 ms, of all of which the filter is given nothing");
   command
-      ->add_option("--parts", c->parts,
-                   "of that, scale, cross, noise, delay, jitter, mount, rows or some of them; the others are as told")
+      ->add_option(
+          "--parts", c->parts,
+          "of that, scale, cross, noise, delay, jitter, mount, rows or some of them; the others are given exactly")
       ->delimiter(',');
-  command->add_option("--axes", c->vio.axes, "0 to 23: the unit's axes, of which nothing is told")
-      ->check(CLI::Range(0, 23));
+  command->add_option("--axes", c->vio.axes, "0 to 23: the unit's axes, which the filter is not given")
+      ->check(pf::capture::whole_number_in(0, 23));
   command->add_option(
       "--start", c->start,
-      "rest; or moving: it moves from the first frame on, in every tenth run too evenly to tell the scale");
+      "rest; or moving: it moves from the first frame on, in every tenth run too evenly to measure the scale");
   command->add_option("--rest", c->vio.rest_s, "at the beginning [s]");
   command->add_option("--readout", c->vio.readout_s, "of a rolling shutter, from the first row to the last [s]");
-  command->add_flag("--as-global", c->vio.as_global, "the filter knows nothing of the readout, for comparison");
+  command->add_flag("--as-global", c->vio.as_global, "the filter takes the shutter as global, for comparison");
   command->add_option("--sigma-px", c->vio.sigma_px, "measurement noise [px]");
   command->add_option("--points", c->vio.points, "of the room");
   command->add_option("--blackout-at", c->vio.blackout_at_s, "when the lens is covered [s]");
@@ -546,7 +562,7 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--scene", c->vio.scene, "of --rendered: room, desk, street, ...");
   command->add_option("--shake", c->vio.shake, "times what the hand of that scene shakes");
   command->add_option("--vertical", c->vertical_deg,
-                      "planes found to be vertical are told to be so within this [degrees]; 0: they are not");
+                      "planes found to be vertical are constrained to be so, within this [degrees]; 0: they are not");
   command->add_flag("--still", c->still, "the camera rests to the end");
   command->add_option("--turn", c->turn_deg_s, "of a turntable on which the camera rests otherwise [degrees/s]");
   command->add_flag("--hand", c->vio.hand, "24 points of a hand wave 0.4 m before the lens");
@@ -554,7 +570,10 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--jobs", c->jobs, "processes at a time");
   command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
   command->add_option("--csv", c->csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
-  command->callback([c, &result] { result = run(*c); });
+  command->callback([c, command, &result] {
+    const std::string unused = unused_option(*command, *c);
+    result = unused.empty() ? run(*c) : fail(unused);
+  });
 }
 
 }  // namespace pfsim

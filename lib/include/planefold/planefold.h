@@ -27,15 +27,18 @@
  * is 0 or 1. Ids are uint32_t.
  *
  * STATUS. 0 is done. Positive: done, with something to know. Negative: rejected, and nothing was
- * changed.
+ * changed. Any call can return PF_ERROR_NULL, PF_ERROR_CONTEXT and PF_ERROR_NONFINITE;
+ * PF_ERROR_RANGE is also of positions and speeds above 1e6 and quaternions not of unit length;
+ * other errors stand at the call.
  * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no
  * globals.
  * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give
  * one.
  * STATES. Tracking means: a pose in this map that this frame's own measurements support, by at
- * least 8 gated inliers that are consistent beyond chance, or, in the frame of a start at a target,
- * by the target; rotation sigma below 20 degrees and position sigma below half the median depth,
- * both against the points in view. Otherwise the pose coasts, and nothing is added to the map until
+ * least 8 gated inliers (half of map.features_in_view where that is less, 5 at least) that are
+ * consistent beyond chance, or, in the frame of a start at a target, by the target; rotation sigma
+ * below 20 degrees and position sigma below half the median depth, both against the points in view.
+ * Otherwise the pose coasts, and nothing is added to the map until
  * it was found again; after motion.coast_s it is lost.
  * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable
  * images, it is left and a new one begins: a new map_id, a new W, and, without a target in view, a
@@ -126,13 +129,13 @@ typedef enum pf_camera_model {
   PF_CAMERA_DIVISION = 4
 } pf_camera_model_t;
 
-/* What a context makes of the numbers of a calibration (lib/docs/theory/lens.md). The window cannot
- * consider them. */
+/* How a context uses the numbers of a calibration (lib/docs/theory/lens.md). */
 typedef enum pf_camera_estimate {
   PF_CAMERA_EXACT = 0, /* takes them as exact; the default */
-  /* allows for their errors in every covariance, and does not correct them (Schmidt) */
+  /* allows for their errors in every covariance, and does not correct them (Schmidt). Filter
+   * only */
   PF_CAMERA_CONSIDER = 1,
-  /* estimates them with pose and map: better wherever nobody has measured them well */
+  /* estimates them with pose and map: better wherever they are not measured well */
   PF_CAMERA_ESTIMATE = 2
 } pf_camera_estimate_t;
 /* Where the times of frames come from. */
@@ -145,15 +148,18 @@ typedef enum pf_timestamps {
 typedef struct pf_camera {
   int32_t model;         /* pf_camera_model_t */
   int32_t width, height; /* [px] 32 .. 4096 */
-  double fx, fy, cx, cy; /* [px] */
-  double distortion[8];  /* in the order of the model; unused entries are zero */
+  /* [px] fx from a tenth of the width to 20 widths, cx from one width to the left to two; the same
+   * of fy and cy with the height */
+  double fx, fy, cx, cy;
+  /* In the order of the model; unused entries are zero. One to one in the inner half of the
+   * image */
+  double distortion[8];
   /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has
-   * the time of its middle row. Needs constant velocity or the inertial model: rows differ by how
-   * the camera moves. */
+   * the time of its middle row. 0 with PF_MOTION_CONSTANT_POSITION, which has no velocity. */
   double readout_s;
 
-  /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a
-   * row of the filter's state, up to nine (ten with imu.sigma_readout_s): count them in
+  /* How the numbers above are used, and how uncertain they are. Each uncertain one is a row of the
+   * filter's state, up to nine (ten with imu.sigma_readout_s): count them in
    * capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
   int32_t estimate; /* pf_camera_estimate_t */
   /* pf_timestamps_t. With nominal ones readout_s counts as 0, with a line in the log, since the
@@ -169,9 +175,9 @@ typedef struct pf_camera {
   double sigma_distortion[8];
 } pf_camera_t;
 
-/* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).
- * PF_ERROR_RANGE: behind the camera or where the model is not one to one; the pixel may lie outside
- * of the image. */
+/* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre); it may lie outside
+ * of the image. PF_ERROR_RANGE: behind the camera or where the model is not one to one.
+ * PF_ERROR_CONFIG, here and below: camera is none. */
 PF_API pf_status_t pf_camera_project(const pf_camera_t* camera, const double p_C[3],
                                      double pixel[2]);
 
@@ -237,7 +243,7 @@ typedef struct pf_imu_model {
   double accel_range; /* [m/s^2] 0 (not known) .. 1e5. Default 0 */
 
   /* Only read with PF_MOTION_INERTIAL. Noise as Kalibr and EuRoC state it; no default fits a unit,
-   * and 0 is rejected. */
+   * and less than 1e-9 is rejected. */
   double gyro_density;  /* white noise [rad/s/sqrt(Hz)], up to 1 */
   double accel_density; /* the same [m/s^2/sqrt(Hz)], up to 10 */
   double gyro_walk;     /* of its bias [rad/s^2/sqrt(Hz)], up to 1 */
@@ -245,7 +251,7 @@ typedef struct pf_imu_model {
   /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu.
    * Default: axes and origin of the camera. */
   double q_BC[4]; /* w x y z */
-  double p_BC[3]; /* [m] */
+  double p_BC[3]; /* [m] up to 10 each */
   double delay_s; /* t_frame = t_sample + delay, -0.5 .. 0.5. Default 0 */
   double gravity; /* [m/s^2] 9 .. 11. Default 9.81 */
   /* How far the mounting and the delay may be off, of each axis: standard deviations, from which
@@ -304,7 +310,8 @@ typedef struct pf_config {
     int32_t mask;
     /* Places: cameras that are kept with up to 24 points and their appearance, by which a lost
      * camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15 kB each and 90
-     * kB for all; -1: 16 with PF_BACKEND_WINDOW, and none with the filter. Default -1 */
+     * kB for all; -1: 16 with PF_BACKEND_WINDOW, and none with the filter. None in any case with
+     * map.masks. Default -1 */
     int32_t max_places;
     /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 1.5 kB each. Default 8 */
     int32_t max_anchors;
@@ -324,9 +331,9 @@ typedef struct pf_config {
    * velocity's variance grows by density^2 dt. */
   struct {
     int32_t model;                       /* pf_motion_model_t. Default constant velocity */
-    double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)] > 0. Default 1 */
-    double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
-    /* [m/s^3/sqrt(Hz)] > 0, in place of linear_acceleration_density with
+    double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)] 1e-9 .. 1e4. Default 1 */
+    double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] 1e-9 .. 1e4. Default 2 */
+    /* [m/s^3/sqrt(Hz)] 1e-9 .. 1e5, in place of linear_acceleration_density with
      * PF_MOTION_CONSTANT_ACCELERATION. Default 10 */
     double linear_jerk_density;
     double coast_s; /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
@@ -347,8 +354,8 @@ typedef struct pf_config {
   /* Depth of a feature that was seen once: rho = 1/depth has mean rho0 and standard deviation
    * relative_sigma * rho0. */
   struct {
-    /* rho0 is 1/depth until the map knows better. > 0. Default 1. After a start with neither target
-     * nor pose it is also the unit of length, see LENGTHS. */
+    /* [m] rho0 is 1/depth until the map has a median (from_map). 1e-4 .. 1e5. Default 1. After a
+     * start with neither target nor pose it is also the unit of length, see LENGTHS. */
     double depth;
     /* 1: rho0 becomes the median of what is in view; where only a target is in view, half of the
      * target's, since a target stands in front of its scene. 0: it stays 1/depth. Default 1 */
@@ -362,8 +369,9 @@ typedef struct pf_config {
   } first_depth;
 
   struct {
-    /* Features to keep in view, 8 .. capacity.max_observations; 0 with capacity.max_patches: none
-     * begin, and patches of walls alone are followed. Default 45 */
+    /* Features to keep in view, 8 .. capacity.max_observations, with PF_BACKEND_WINDOW 8 ..
+     * window.points; 0 with capacity.max_patches: none begin, and patches of walls alone are
+     * followed. Default 45 */
     int32_t features_in_view;
     int32_t border_px; /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
     int32_t masks;     /* pf_masks_t. Default none. Other than none, it adds memory */
@@ -378,10 +386,10 @@ typedef struct pf_config {
     int32_t enabled;     /* 1: finds planes and folds points into them. 0: points only. Default 1 */
     int32_t min_points;  /* a new plane has more points than this (l_T), 4 .. 60. Default 7 */
     double max_distance; /* [m] of a point from a new plane (d_T), 1e-5 .. 10. Default 0.01 */
-    double
-        max_radius; /* [m] of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
+    /* [m] of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
+    double max_radius;
     /* [m] of real surfaces: standard deviation of a point from its plane, 1e-6 .. 1. Default
-         * 0.002 */
+     * 0.002 */
     double roughness;
     /* [m] A point can be folded when its standard deviation relative to the camera is below this
      * (sigma_T), 1e-5 .. 10. Default 0.05 */
@@ -404,9 +412,8 @@ typedef struct pf_config {
   /* One line of plain text, up to 239 characters, on what the library decided; null: no log.
    * Default null */
   void (*log)(void* user, const char* line);
-  void*
-      /* handed to both. Both may call functions of a const pf_slam_t*; others are PF_ERROR_STATE */
-      user;
+  /* Handed to both. Both may call functions of a const pf_slam_t*; others are PF_ERROR_STATE */
+  void* user;
 } pf_config_t;
 
 PF_API pf_status_t pf_config_default(pf_config_t* config);
@@ -443,7 +450,7 @@ typedef struct pf_pose {
   double q_WC[4];        /* w x y z */
   double p_WC[3];        /* [m] */
   double covariance[36]; /* 6x6 of (theta, p) [rad, m] */
-  double v_W[3];         /* velocity [m/s]; zero with the constant-position model */
+  double v_W[3];         /* velocity [m/s]; zero with PF_MOTION_CONSTANT_POSITION */
   double w_C[3];         /* angular velocity [rad/s], in C; the same */
   /* of the map that W belongs to; never used twice. Ignored in a pose that you pass in */
   uint32_t map_id;
@@ -462,7 +469,7 @@ typedef struct pf_target {
   int32_t kind; /* pf_target_kind_t */
   /* Rectangle: its frame T is at its centre, x right and y down as seen upright, z into the wall.
    * */
-  double width, height; /* [m] > 0, of the outer edge of the dark area */
+  double width, height; /* [m] 1e-4 .. 1e3, of the outer edge of the dark area */
   /* Rectangle: where that frame is in W, p_W = R_WT p_T + p_WT, q_WT w x y z. All zero: it is W. */
   double q_WT[4], p_WT[3];
   /* Points. */
@@ -475,18 +482,21 @@ typedef struct pf_target {
   double sigma; /* [m] 1e-9 .. 1e3, standard deviation of the target's points */
 } pf_target_t;
 
-/* Start in front of a known target. Before the first frame only. Until the target is seen the state
- * is starting. */
+/* Starts in front of a known target, before the first frame. Until the target is seen the state is
+ * starting. PF_ERROR_STATE: after the first frame or pf_set_second_pose, and in a loaded map; of a
+ * rectangle also after pf_start_from_pose, and after pf_add_wall without a place in W.
+ * PF_ERROR_RANGE: a number of the target is outside of its range, or first_pose has no
+ * covariance. */
 PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
-/* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W,
- * w_C). Before the first frame. With images the state is starting until the first frames have
- * measured the depths, unless walls or a speed above twice its sigma fix them; the scale is that of
- * first_depth where nothing else gives it. PF_ERROR_STATE together with a rectangle as target,
- * which gives the pose itself. With a target of points both may be given: the known pose then
- * counts if the points are seen in the first frame, and their own sighting later. With neither
- * start, W is the first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that
- * are no covariance. */
+/* Starts from a known pose, with its covariance and velocity, before the first frame;
+ * velocity_covariance is 6x6 of (v_W, w_C). With images the state is starting until the first
+ * frames have measured the depths, unless walls or a speed above twice its sigma fix them; the
+ * scale is that of first_depth where nothing else gives it. PF_ERROR_STATE together with a
+ * rectangle as target, which gives the pose itself. With a target of points both may be given: the
+ * known pose then counts if the points are seen in the first frame, and their own sighting later.
+ * With neither start, W is the first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or
+ * numbers that are no covariance. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose,
                                       const double velocity_covariance[36]);
 
@@ -510,9 +520,8 @@ PF_API pf_status_t pf_withdraw_target(pf_slam_t* slam);
 /* A wall: a plane that is known beforehand, from a building plan, with how uncertain it is
  * (lib/docs/theory/walls.md). Fields as in pf_plane_t. */
 typedef struct pf_wall_prior {
-  double R_WP
-      /* the plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
-      [9];
+  /* The plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
+  double R_WP[9];
   double p_WP[3]; /* its origin: the wall's own centre, inside of the outline [m] */
   /* 3x3 of (alpha, beta, delta) at that origin: n_true = n + alpha x_W + beta y_W, n_true . (p -
    * p_WP) = delta. Standard deviations of 1e-9 at least.   [rad, rad, m] */
@@ -577,30 +586,36 @@ typedef struct pf_mask {
  * negative side. */
 PF_API pf_status_t pf_set_mask(pf_slam_t* slam, const pf_mask_t* mask);
 
-/* Track one frame. PF_OK means tracked. An image that is byte for byte the one before repeats that
- * one's pose and status under its own time and is counted; nothing is measured, and the next
- * prediction begins at the image's first time. A camera that is frozen for longer than
- * motion.coast_s coasts. */
+/* Tracks one frame. PF_OK means tracked; a note says why there is no pose of this frame's own:
+ * PF_NOTE_STARTING, PF_NOTE_COASTING, PF_NOTE_LOST, PF_NOTE_UNUSABLE. PF_ERROR_SIZE and
+ * PF_ERROR_TIME as above; PF_ERROR_STATE: the context takes observations. An image that is byte for
+ * byte the one before repeats that one's pose and status under its own time and is counted; nothing
+ * is measured, and the next prediction begins at the image's first time. A camera that is frozen
+ * for longer than motion.coast_s coasts. */
 PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 
 /* A feature that something else has found and recognised: for trackers in hardware and for
  * simulations. A new id begins a feature (if the map has room for it), a known one measures it.
  * With a target of points, the ids 0 .. count-1 are its points. Of an id that comes twice in a
- * call, the first counts. PF_ERROR_STATE with a rectangle as target, which is found in images only,
- * and in the window with any target or in a loaded map.
- * A context takes frames or observations, not both. */
+ * call, the first counts; of more than features and observations of one frame together
+ * (capacity.max_features, with the window window.points, and max_observations) the rest is not
+ * read. A context takes frames or observations, not both. */
 typedef struct pf_observation {
   uint32_t id;
-  double pixel[2];
-  double sigma_px; /* 0: measurement.sigma_px of the config */
+  double pixel[2]; /* below 1e5 */
+  double sigma_px; /* 0.01 .. 100; 0: measurement.sigma_px of the config */
 } pf_observation_t;
 
+/* One frame by its features, in place of an image. Notes as of pf_push_frame. PF_ERROR_TIME: not
+ * after the last frame. PF_ERROR_STATE: the context takes frames; with a rectangle as target, which
+ * is found in images only; in the window with any target or in a loaded map. */
 PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns,
                                         const pf_observation_t* observations, size_t count);
 
 /* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation).
  * The next frame's prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s],
- * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with PF_MOTION_INERTIAL. */
+ * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE: with PF_MOTION_INERTIAL and
+ * PF_MOTION_CONSTANT_POSITION. */
 PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */
@@ -627,7 +642,7 @@ typedef enum pf_map_kind {
   PF_MAP_CONTINUE = 2
 } pf_map_kind_t;
 
-/* Bytes that pf_save_map needs at most, now. Errors as of pf_save_map. */
+/* Bytes that pf_save_map needs at most, now. Notes and errors as of pf_save_map. */
 PF_API pf_status_t pf_map_size(const pf_slam_t* slam, int32_t kind, size_t* bytes);
 
 /* Writes the map into a buffer, of which *used is then the map. What is kept are places: those that
@@ -654,12 +669,11 @@ PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer
  *
  * With PF_MAP_CONTINUE goes on where the saved context was, at any address, with the next frame,
  * whose time is after the last one's. Masks, walls, anchors, marks, gravity and samples come back;
- * the callbacks are those of this context. PF_ERROR_STATE: anything was told to the context since
+ * the callbacks are those of this context. PF_ERROR_STATE: a call has changed the context since
  * pf_create or pf_reset. PF_ERROR_MAP: another release, build, scalar, kernel set or config (all
  * fields but kernels and callbacks), and the log names which; or damaged. The CRC is no
  * authentication: of a forged file too every count, index and enum is checked, so that it reaches
- * no memory outside of the block, but its numbers are believed: poses and maps are then as wrong as
- * they are. */
+ * no memory outside of the block, but its poses and points are used as they stand there. */
 PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
 
 /* -------------------------------------------------------------------------------- output -- */
@@ -677,7 +691,9 @@ PF_API pf_status_t pf_get_state(const pf_slam_t* slam, pf_state_t* state);
 /* Pose at the last frame. PF_ERROR_STATE before the first one. */
 PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 
-/* Pose predicted to a time not before the last frame, for display; the state does not change. */
+/* Pose predicted to a time at or after the last frame, for display; the state does not change.
+ * PF_ERROR_STATE before the first pose, PF_ERROR_TIME before the last frame, PF_ERROR_RANGE more
+ * than 10 s after it. */
 PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
 
 /* How the camera moved between two frames of one map. Unlike the pose in W, which drifts as a
@@ -709,7 +725,8 @@ PF_API pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* 
 
 /* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be
  * null). Of a rolling shutter it is the one at the frame's own time, which its row does not share:
- * lib/docs/theory/rolling_shutter.md has the way to it. */
+ * lib/docs/theory/rolling_shutter.md has the way to it. PF_ERROR_STATE before the first pose,
+ * PF_ERROR_RANGE as of pf_camera_project. */
 PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2],
                                     double covariance[4]);
 
@@ -770,12 +787,12 @@ typedef struct pf_plane {
   double distance;    /* n . p of its points */
   double R_WP[9];     /* the plane's frame, row-major: x and y in the plane, z the normal */
   double p_WP[3];     /* its origin, in the plane and about in the middle */
-  /* 3x3 of (alpha, beta, delta): n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.  
-   * [rad, rad, m] */
+  /* 3x3 of (alpha, beta, delta) [rad, rad, m]: n_true = n + alpha x_W + beta y_W,
+   * n_true . (p - p_WP) = delta: two tilts about p_WP, and a shift along the normal */
   double covariance[9];
-  double outline_P[PF_OUTLINE_MAX]
-                  [2]; /* x y in the plane's frame, counter-clockwise seen from the normal's side */
-  double area;         /* [m^2] of the outline */
+  /* x y in the plane's frame, counter-clockwise seen from the normal's side */
+  double outline_P[PF_OUTLINE_MAX][2];
+  double area; /* [m^2] of the outline */
 } pf_plane_t;
 
 /* Copy of the planes. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
@@ -786,9 +803,9 @@ PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size
  * (*current_id is 0) when it is gone. */
 PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id);
 
-/* The direction of gravity in W, of any length; zero forgets it, and so does a new map. Only
- * pf_plane_t.orientation depends on it. With PF_MOTION_INERTIAL gravity is known without it
- * (pf_get_inertial), and this goes before that. */
+/* Sets the direction of gravity in W, of any length below 1e6; zero removes it, and so does a new
+ * map. Only pf_plane_t.orientation depends on it. With PF_MOTION_INERTIAL gravity is estimated
+ * (pf_get_inertial), and a direction that is set here is used in its place. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
 
 /* States that a plane is vertical within a standard deviation of sigma_rad, 1e-6 .. 0.5, which
@@ -807,7 +824,8 @@ typedef struct pf_hit {
 } pf_hit_t;
 
 /* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline.
- * PF_NOTE_NOTHING when it meets none. */
+ * PF_NOTE_NOTHING when it meets none. PF_ERROR_STATE before the first pose, PF_ERROR_RANGE where
+ * the pixel has no ray. */
 PF_API pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit);
 
 /* A pose that stays where it was set while the map is corrected: something that is shown, measured
@@ -833,7 +851,7 @@ typedef struct pf_anchor {
  * the last frame. PF_ERROR_RANGE: q_WC is not of unit length, or a coordinate is above 1e6. */
 PF_API pf_status_t pf_add_anchor_pose(pf_slam_t* slam, const pf_pose_t* pose, uint32_t* id);
 
-/* Sets an anchor where a ray of the last frame meets a plane, as pf_hit_test says: plane and p_W
+/* Sets an anchor where a ray of the last frame meets a plane, as of pf_hit_test: plane and p_W
  * count. It stays on that plane and on that ray as both are corrected. Its third axis is the
  * plane's normal, and the first one points to the right in the image as far as that allows (down
  * where the plane is seen along its right). Errors as of pf_add_anchor_pose. PF_NOTE_NOTHING: no
@@ -887,9 +905,8 @@ typedef struct pf_patch {
   /* Where its corners are in the last frame, in the order of a circle: measured (inlier, outlier,
    * new, waiting), or else predicted. */
   double corners_px[4][2];
-  double covariance_px
-      /* 8x8 of corners that were measured (x, y of each), from the noise of this frame's image */
-      [64];
+  /* 8x8 of corners that were measured (x, y of each), from the noise of this frame's image */
+  double covariance_px[64];
   double weight; /* share of its pixels that fit in the last frame, 0 .. 1 */
 } pf_patch_t;
 
@@ -904,8 +921,8 @@ typedef struct pf_template {
   /* side * side, row by row, in the image where the feature was first seen. mask: probability of
    * belonging to the dominant plane in 1/255; 0 where there was no image. */
   uint8_t grey[31 * 31], mask[31 * 31];
-  double normal_W
-      [3]; /* unit, of the dominant plane, towards the camera; a folded feature has its plane's */
+  /* Unit, of the dominant plane, towards the camera; a folded feature has its plane's */
+  double normal_W[3];
   double sigma_normal_rad; /* of the template's own normal; 0 of a folded feature */
   double centre_px[2];     /* of the middle pixel, in the image where the feature was first seen */
   int32_t frames;          /* that the mask has learnt from */
@@ -928,7 +945,7 @@ enum {
   PF_STAGE_COUNT = 10
 };
 
-/* The calibration as it is known now, and the covariance of its numbers (may be null): 10x10,
+/* The calibration as estimated so far, and the covariance of its numbers (may be null): 10x10,
  * row-major, of (fx, fy, cx, cy, distortion[0] .. distortion[4], readout_s); zero in the rows of
  * what is exact. */
 PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera,
@@ -954,21 +971,23 @@ typedef struct pf_report {
   int64_t t_ns;
   int32_t state;  /* pf_state_t */
   int32_t frames; /* frames pushed since create or reset */
-  int32_t attempts, matches, inliers, new_features,
-      evicted; /* a patch counts as eight of the first three */
+  /* Features searched for, found, and used; a patch counts as eight in each of the three */
+  int32_t attempts, matches, inliers;
+  int32_t new_features, evicted; /* that began in this frame, and that were removed in it */
   int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
   int32_t features_trial; /* that began on a plane, and count among none of the kinds before */
   int32_t planes;
-  int32_t state_dim;
-  int32_t state_dim_held; /* rows of the state that are considered only: without gain */
+  int32_t state_dim;      /* rows of the covariance */
+  int32_t state_dim_held; /* of them considered only: without gain */
   /* rows that the same map would need with 3-D points in place of folded ones */
   int32_t state_dim_points_only;
   uint32_t map_id;    /* as in pf_pose_t; of the first map 1, and one more for each new one */
   int32_t kept_views; /* of capacity.max_kept_views */
-  double nis;      /* normalised innovation squared of this frame's inliers, jointly; of matches in
-                                       images with the noise that one match has by itself */
-  int32_t nis_dof; /* and its degrees of freedom */
-  int32_t kernels; /* pf_kernels_t in use */
+  /* Normalised innovation squared of this frame's inliers, jointly, and its degrees of freedom; of
+   * matches in images with the noise that one match has by itself */
+  double nis;
+  int32_t nis_dof;
+  int32_t kernels;          /* pf_kernels_t in use */
   int32_t patches, cameras; /* patches on walls, and the reference cameras that saw them first */
   /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
   int64_t duplicates;
@@ -1063,14 +1082,14 @@ typedef struct pf_imu_report {
   int32_t reason;    /* pf_imu_reason_t, now */
   double reason_value;
   double reason_q_BC[4]; /* w x y z; of the axes that fit, where the reason is about axes */
-  /* Densities as they are known now, learned from samples and innovations: between a third and ten
-   * times those of the config. 0 without PF_MOTION_INERTIAL */
+  /* Densities as estimated so far, from samples and innovations: between a third and ten times
+   * those of the config. 0 without PF_MOTION_INERTIAL */
   double gyro_density, accel_density;
 } pf_imu_report_t;
 
 PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);
 
-/* What is known of the inertial unit and of gravity, at the last frame. */
+/* Estimates of the inertial unit and of gravity, at the last frame. */
 typedef struct pf_inertial {
   double gravity_W[3];  /* [m/s^2] */
   double gyro_bias[3];  /* [rad/s] in B */
@@ -1091,7 +1110,7 @@ typedef struct pf_inertial {
    * least. Images alone or samples alone are never enough. */
   uint32_t resting;
   uint32_t rests; /* begun since the beginning */
-  /* Mounting and delay as they are known now; those of the config where they are not estimated. */
+  /* Mounting and delay as estimated so far; those of the config where they are not estimated. */
   double q_BC[4], p_BC[3], delay_s;
   double readout_s; /* of the camera's rows */
   /* What readings become, row-major: w_B = gyro_matrix (gyro - gyro_bias), and in the same way the

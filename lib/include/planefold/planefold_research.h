@@ -26,10 +26,8 @@ extern "C" {
 
 /* How a point enters a plane. */
 typedef enum pf_fold {
-  PF_FOLD_CONDITION =
-      /* its distance from the plane is measured as zero, within the roughness; then it is dropped
-       * */
-  1,
+  /* its distance from the plane is measured as zero, within the roughness; then it is dropped */
+  PF_FOLD_CONDITION = 1,
   PF_FOLD_DROP = 2 /* its distance is dropped (Gee 2007, eq 4 and 6) */
 } pf_fold_t;
 
@@ -38,10 +36,10 @@ typedef struct pf_research {
    * (lib/docs/theory/gauge.md). 0: the textbook EKF, which is overconfident. Default 1 */
   int32_t keep_gauge;
   int32_t fold;        /* pf_fold_t. Default condition */
-  double linear_walk;  /* of PF_MOTION_CONSTANT_POSITION [m/sqrt(s)] > 0. Default 0.1 */
-  double angular_walk; /* the same [rad/sqrt(s)] > 0. Default 0.2 */
-  /* 1: a patch of a wall is taken in where its corners pass the gate. 0: always, on the nearest
-   * wall that it may lie on. Default 1 */
+  double linear_walk;  /* of PF_MOTION_CONSTANT_POSITION [m/sqrt(s)] 1e-9 .. 1e4. Default 0.1 */
+  double angular_walk; /* the same [rad/sqrt(s)] 1e-9 .. 1e4. Default 0.2 */
+  /* 1: a patch of a wall is used where its corners pass the gate. 0: always, on the nearest wall
+   * that it may lie on. Default 1 */
   int32_t gate_patches;
 } pf_research_t;
 
@@ -58,8 +56,9 @@ PF_API pf_status_t pf_config_get_research(const pf_config_t* config, pf_research
 /* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7,
  * row-major, in the order translation, rotation, log scale of the whole world. It must never grow
  * without absolute data. For tests: cubic in the state's dimension. scratch needs state_dim *
- * (state_dim + 8) doubles. PF_ERROR_RANGE: P is no covariance, by more than rounding leaves
- * (lib/docs/theory/float.md). */
+ * (state_dim + 8) doubles (pf_report_t), else PF_ERROR_MEMORY. PF_ERROR_STATE: before the first
+ * state, and with PF_BACKEND_WINDOW. PF_ERROR_RANGE: P is no covariance, by more than rounding
+ * leaves (lib/docs/theory/float.md). */
 PF_API pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch,
                                             size_t scratch_count, double information[49]);
 

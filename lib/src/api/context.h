@@ -41,7 +41,7 @@ class InCall {
   InCall(const InCall&) = delete;
   InCall& operator=(const InCall&) = delete;
 
-  /// What the call returns. A call that was rejected, or found nothing to change, has told the context nothing.
+  /// What the call returns. A call that was rejected, or found nothing to change, has not changed the context.
   pf_status_t end(pf_status_t status) const {
     if (status >= PF_OK && status != PF_NOTE_NOTHING) slam_->is_told = true;
     return status;

@@ -5,8 +5,8 @@
 #include "filter_slam/features/feature_keeper.h"
 #include "map/map.h"
 
-/// Anchors of the filter: each is held by a reference camera of the state, the copy of the camera from which it was set, and so by all that
-/// the state tells of that camera from then on.
+/// Anchors of the filter: each is held by a reference camera of the state, the copy of the camera from which it was set, and so moves with
+/// every correction of that camera from then on.
 
 namespace pf {
 

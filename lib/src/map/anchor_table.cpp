@@ -17,7 +17,7 @@ void place_by(const RelativePlace& T_WK, const Mat6& covariance_WK, const Anchor
     a.covariance = on.J_V.lazyProduct(a.covariance_WV).lazyProduct(on.J_V.transpose()) +
                    on.J_plane.lazyProduct(plane->covariance).lazyProduct(on.J_plane.transpose());
   } else {
-    if (plane != nullptr && a.beside.isZero(0)) {  // nothing tells how far along its ray it is
+    if (plane != nullptr && a.beside.isZero(0)) {  // its distance along the ray is not constrained
       const Scalar length2 = a.T_VA.p.squaredNorm();
       a.beside.diagonal() << Vec3::Ones(), Vec3::Constant(length2);
     }

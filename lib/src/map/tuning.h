@@ -38,10 +38,10 @@ namespace pf::tuning {
 /// Walls whose place is judged by what is seen.
 namespace plane_doubt {
 inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
-inline constexpr int kMinRefused = 8;               ///< points, before a wall is doubted or believed again
-inline constexpr int kRefusedShare = 4;             ///< refused points for each on the wall, above which it is doubted
-inline constexpr int kCells = 5;                    ///< along each side of the image
-inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance that a doubted wall's prior gets
+inline constexpr int kMinRefused = 8;               ///< points, before a wall is rejected or accepted again
+inline constexpr int kRefusedShare = 4;       ///< rejected points for each on the wall, above which it is rejected
+inline constexpr int kCells = 5;              ///< along each side of the image
+inline constexpr Scalar kDoubtedPrior = 100;  ///< times its covariance that a rejected wall's prior gets
 }  // namespace plane_doubt
 
 /// Points before a wall that is hardly known.

@@ -30,7 +30,7 @@ bool WallVotes::add(Scalar d, Scalar variance, Scalar gate) {
 
 bool WallVotes::contradict(const PlaneEntry& wall) const {
   const auto contradicts = [&](int points) { return points >= kMinRefused && points > kRefusedShare * on; };
-  // Points vouch for a wall that patches are refused on, half as many where not one is off it.
+  // Points outweigh patches that were rejected on a wall: half as many are enough where not one is off it.
   const bool vouched = on >= (off > 0 ? kMinRefused : kMinRefused / 2);
   const bool denied =
       (wall.outliers >= kMinRefused && wall.outliers > on) || (wall.is_refused_by_patches() && !vouched);

@@ -16,7 +16,7 @@ inline constexpr Scalar kApart = Scalar(0.25);         ///< the same, from which
 inline constexpr Scalar kGone = Scalar(2);             ///< the same, beyond which a place leaves the filter's state
 inline constexpr int kMaxReturns = 6;                  ///< places that come back at once, where the map is found again
 inline constexpr Scalar kFarShift = Scalar(0.5);       ///< [median depths] apart, where two views share about half
-inline constexpr Scalar kFarTurn = Scalar(0.4);        ///< [rad] likewise
+inline constexpr Scalar kFarTurn = Scalar(0.4);        ///< [rad] the same between directions of view
 }  // namespace place
 
 /// Which places an image may show.
@@ -30,7 +30,7 @@ inline constexpr int kMinMatches = 6;                 ///< of a place that is tr
 inline constexpr int kSeed = 1;                       ///< of the generator that draws triples
 inline constexpr int kTrials = 200;                   ///< triples, at most
 inline constexpr Scalar kBoundWidth = Scalar(0.006);  ///< of an inlier, in image widths: corners lie within 2 px
-inline constexpr Scalar kSigmaWidth = Scalar(0.002);  ///< standard deviation of such a corner, likewise
+inline constexpr Scalar kSigmaWidth = Scalar(0.002);  ///< standard deviation of such a corner, in image widths
 inline constexpr Scalar kHuber = Scalar(2);           ///< residuals beyond count linearly [standard deviations]
 inline constexpr int kRounds = 6;                     ///< of the refinement
 inline constexpr Scalar kInflation = Scalar(4);       ///< of the covariance of such a pose, for what the map shares

@@ -7,7 +7,7 @@
 #include "map/map.h"
 #include "memory/map_bytes.h"
 
-/// Calls of the API that change what a map holds beside what images tell: a saved map that is begun in, and anchors.
+/// Calls of the API that change the map without an image: a saved map that is begun in, and anchors.
 
 namespace pf {
 

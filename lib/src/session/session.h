@@ -64,7 +64,7 @@ class Session {
     has_filter() ? filter_->motion().push_control(dv_C, dw_C) : window_->motion().push_control(dv_C, dw_C);
   }
   Status mark_pose() { return has_filter() ? filter_->mark_pose() : window_->placement().mark_pose(); }
-  /// What a map holds beside what images tell.
+  /// Calls that change the map without an image.
   MapCalls map_calls() { return MapCalls(settings_, map_, filter_, window_); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
   void set_gravity(const Vec3& gravity_W) {

@@ -37,7 +37,7 @@ typedef enum pf_libcamera_format {
   PF_LIBCAMERA_NV12 = 3,
   PF_LIBCAMERA_YUYV = 4,
   PF_LIBCAMERA_RGB888 = 5, /* in memory blue, green, red, as libcamera names it; weighted to grey */
-  PF_LIBCAMERA_BGR888 = 6, /* in memory red, green, blue; likewise */
+  PF_LIBCAMERA_BGR888 = 6, /* in memory red, green, blue; weighted to grey */
   PF_LIBCAMERA_FORMATS = 7
 } pf_libcamera_format_t;
 

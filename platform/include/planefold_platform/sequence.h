@@ -46,7 +46,7 @@ typedef struct pf_sequence_info {
   const char* mask_path;        /* mask.png beside the images, for pf_read_mask */
 } pf_sequence_info_t;
 
-/* What pf_open_sequence returns where it is the calibration that is refused. */
+/* What pf_open_sequence returns where it is the calibration that is wrong. */
 #define PF_SEQUENCE_WRONG_CALIBRATION (-3)
 
 /* Sources:
@@ -57,20 +57,20 @@ typedef struct pf_sequence_info {
  *               (or timestamps.txt, or either as .csv), calib.yaml or KITTI's calib.txt. Without a table, times in the names are taken
  *               (12.05.png, 1403636579763555584.png), or else the names in natural order at the calibration's rate_hz, or 30 Hz, with a
  *               warning. Where images of several kinds lie side by side (frame-000000.color.png, frame-000000.depth.png), those in colour
- *               or grey are taken; previews and single files of another name are left out; what is ambiguous is refused.
+ *               or grey are taken; previews and single files of another name are left out; what is ambiguous is an error.
  *   images:DIR/left_*.png   the images of that name only
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
  *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or ETH3D's calibration.txt, or given.
  * A table of frames has the columns that its header names (time, name, index, exposure; units as in "time [us]" or timestamp_ns), or one
  * of the forms time | time name | name time | index time name | name or index, time, exposure. It is cut at commas, semicolons or blanks,
  * and may have quotes and byte order marks. Times are seconds (euroc: nanoseconds); where that gives no camera's rate, they are taken in
- * the unit, or as frame numbers, that gives the calibration's rate_hz, with a warning. Other columns are refused.
+ * the unit, or as frame numbers, that gives the calibration's rate_hz, with a warning. Other columns are errors.
  * Inertial samples are looked for in imu.csv or gyro_accel.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
  * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white, but data of 14 bits or fewer are scaled up and
  * raw thermal images stretched, with a warning). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the
  * calibration. Hidden files are left out. Times must grow from frame to frame.
  * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR, calib.yaml or another name that the layout has;
- *              of images: also the one file of such a form there or else beside the images, refused where several differ
+ *              of images: also the one file of such a form there or else beside the images; an error where several differ
  * camera       of a calibration of several: its name there or the number that ends it; null: the one that the folder of the images is
  *              named after, or the first, and then a note names the others */
 int pf_open_sequence_of(const char* source, const char* calibration, const char* camera, pf_sequence_t** sequence,
@@ -129,8 +129,8 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  * Each may have readout_s, of a rolling shutter [s], timestamps: real | nominal (pf_timestamps_t; real), and say how well its numbers
  * are known (pf_camera_t): sigma_focal, sigma_aspect, sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value
  * is filled in: 0.01, 0.001, 1 % of the width, and for distortion zeros, or 0.05 where the file names none. rate_hz (may be null) is 0
- * where the file does not say it.
- * A field is refused that is there twice, looks misspelled, or may change what others mean (another model, further coefficients,
+ * where the file does not state it.
+ * A field is an error that is there twice, looks misspelled, or may change what others mean (another model, further coefficients,
  * images of another size), and so is any unknown one of the plain form; other unknown fields are ignored with a note.
  * which  as camera of pf_open_sequence_of; null: the first, with a note that names the others */
 int pf_read_calibration_of(const char* path, const char* which, pf_camera_t* camera, double* rate_hz,
@@ -177,7 +177,7 @@ int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SE
  *           microseconds.
  *   signs   of iOS (Core Motion), by its names, become those of a specific force: +9.8 upwards at rest
  *   gravity of a column or file of its own is added to accelerations that are without
- *   order   times up to 50 ms late are put in order, and rows that repeat a time passed over; further back, or standing still, is refused
+ *   order   times up to 50 ms late are put in order, and rows that repeat a time passed over; further back, or standing still, is an error
  * path  a file; GYRO+ACCEL, a file for each; or a folder with both (Gyroscope.csv, Accelerometer.csv and the like), of which accelerations
  *       are taken between two, at the times of the rates
  * With 0, message says in one line what was converted, mended or left out, or is empty. *samples is to be given to pf_free_imu. */
@@ -191,8 +191,8 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
 /* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on, with : or =),
  * ORB-SLAM3's IMU.NoiseGyro and so on, imu_utils' Gyr and Acc (of single samples: divided by the root of its update_rate, or of 200 Hz), or
  * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk; each may have gravity [m/s^2], 9 .. 11. Sets these fields
- * of *imu, gravity only where the file has it, and none when it is refused. A density that no unit has (degrees, or the noise of single
- * samples) is refused. With 0, message is a note on what was ignored, or empty. */
+ * of *imu, gravity only where the file has it, and none on an error. A density that no unit has (degrees, or the noise of single
+ * samples) is an error. With 0, message is a note on what was ignored, or empty. */
 int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
 
 /* How the unit B is mounted, by one of these fields; matrices are of 4 x 4 numbers in rows, one list or four.
@@ -215,11 +215,11 @@ int pf_parse_imu_mount(const char* text, size_t size, const char* name, pf_imu_m
                        char message[PF_SEQUENCE_MESSAGE]);
 
 /* A folder for what a program writes. It is made where it is missing. Its list .planefold names what was written there: where there is
- * one, the files that it names are deleted, and no others. A folder that holds anything and has no list is refused, untouched.
+ * one, the files that it names are deleted, and no others. A folder that holds anything and has no list is an error, and stays untouched.
  * option  how the user names the folder, for messages: "--out" */
 int pf_open_output_folder(const char* folder, const char* option, char message[PF_SEQUENCE_MESSAGE]);
 
-/* Says beforehand whether the folder would be refused, and changes nothing. */
+/* The error that pf_open_output_folder would return; changes nothing. */
 int pf_check_output_folder(const char* folder, const char* option, char message[PF_SEQUENCE_MESSAGE]);
 
 /* Refuses a folder from which pf_open_output_folder would delete what the program reads: input is a file, or a folder of images. */

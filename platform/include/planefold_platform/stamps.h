@@ -1,7 +1,7 @@
 /* Times of frames and samples: the device's where they can be true, otherwise those of arrival; they grow without end.
  *
- * A device whose clock stands still, was set back or jumped is not believed for ever, and is believed again as soon as its times lie
- * after the last one that was kept. A pure rule on numbers, shared by the modules that read devices.
+ * Where a device's clock stands still, was set back or has jumped, times of arrival take its place until its times lie after the last
+ * one that was kept again. A pure rule on numbers, shared by the modules that read devices.
  */
 #ifndef PLANEFOLD_PLATFORM_STAMPS_H
 #define PLANEFOLD_PLATFORM_STAMPS_H

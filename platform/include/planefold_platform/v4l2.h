@@ -34,7 +34,7 @@ typedef struct pf_v4l2 pf_v4l2_t;
 typedef enum pf_v4l2_format {
   PF_V4L2_ANY = 0,  /* the cheapest that the camera has in this size and at this rate: planes, pairs, samples, JPEG */
   PF_V4L2_GREY = 1, /* a plane of 8-bit grey; nothing is converted */
-  PF_V4L2_NV12 = 2, /* likewise, with colour behind it */
+  PF_V4L2_NV12 = 2, /* the same plane, with colour behind it */
   PF_V4L2_YUYV = 3, /* every second byte is grey */
   PF_V4L2_Y16 = 4,  /* samples of 10 to 16 bits in 16: how many, the pictures say (pf_v4l2_info_t.bits) */
   PF_V4L2_MJPEG = 5,

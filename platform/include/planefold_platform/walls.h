@@ -37,12 +37,12 @@ typedef struct pf_walls {
  *   {"planefold_walls": 1, "up": [0, 0, 1],
  *    "walls": [{"name", "from": [x, y], "to": [x, y], "base", "height", "seen_from": "left" | "right" | "both",
  *               "sigma_rotation_deg", "sigma_vertical_deg", "sigma_offset_m", "roughness_m"}],
- *    "faces": [{"name", "corners": [[x, y, z], ..], "seen_from": "front" | "both", and sigmas and roughness likewise}]}
+ *    "faces": [{"name", "corners": [[x, y, z], ..], "seen_from": "front" | "both", and sigmas and roughness as of walls}]}
  * A wall stands upright on the line from .. to, from the height base on; left and right are as one walks from `from`. Walls need up to
  * be z. A face is any convex polygon; its corners go counter-clockwise where it is seen from its front.
  * sigma_rotation_deg is about the up direction, sigma_vertical_deg out of it, sigma_offset_m along the normal, all at the wall's own
  * centre. up, walls, faces, a face's seen_from (front) and roughness_m (that of the library's config) may be missing, and nothing else;
- * a field that is there twice or is not known is refused. */
+ * a field that is there twice or is not known is an error. */
 int pf_read_walls(const char* path, pf_walls_t* walls, char message[PF_WALLS_MESSAGE]);
 
 /* The same from text in memory; name stands for the file in messages. */

@@ -10,7 +10,7 @@ from .adjust_run import adjust, make_problem, residuals
 from .camera import camera_of_run, read_camera
 from .errors import compare
 from .files import read_run, read_table
-from .main import is_foreign, write
+from .output_folder import is_foreign, write
 from .trajectories import Trajectory, read_trajectory
 
 MARK = "# T_WC of all tracked frames, adjusted together"

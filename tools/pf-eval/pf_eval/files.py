@@ -77,6 +77,9 @@ def read_table(path):
     rows = list(csv.DictReader(read_text(path).splitlines()))
     if not rows:
         raise Refused(f"{path}: is empty")
+    for number, row in enumerate(rows, 2):
+        if None in row or None in row.values():
+            raise Refused(f"{path}: line {number} has another number of columns than the line of names; was the file cut off?")
     table = {}
     for name in rows[0]:
         column = [row[name] for row in rows]

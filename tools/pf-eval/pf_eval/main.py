@@ -13,6 +13,7 @@ from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
 from .files import list_maps, read_map, read_run, read_table
 from .options import arguments
+from .output_folder import write
 from .planes import compare_planes, folding, read_planes
 from .planes_truth import compare_planes_with_truth
 from .plausible import tell_lengths, tell_order
@@ -182,22 +183,6 @@ def evaluate(options):
     if options.corners:
         return evaluate_corners(options)
     return evaluate_truth(options)
-
-
-def is_foreign(path, mark):
-    """Whether a file is there that holds something, and not the mark of what pf-eval writes."""
-    path = pathlib.Path(path)
-    return path.is_file() and path.stat().st_size > 0 and mark.encode() not in path.read_bytes()
-
-
-def write(path, text, mark, program="pf-eval"):
-    """mark: a part of the text by which a later run knows that it may take the place of this file."""
-    try:
-        if is_foreign(path, mark):
-            raise Refused(f"{path}: is there and was not written by {program}; name another file")
-        pathlib.Path(path).write_text(text)
-    except OSError as error:
-        raise Refused(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def write_rows(path, names, rows):

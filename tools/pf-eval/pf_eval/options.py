@@ -25,16 +25,16 @@ rot_by_positions_rmse_deg uses the one that the positions gave, which is not kno
 applied ("frame" says which was compared). Without --truth the one that report.json names is taken. NEES is given for runs in the truth's own
 frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
 within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
---planes-truth reads a run of pf-capture --tracks and says which members of its planes are right: by the surfaces of a scene (sim:), by
+--planes-truth reads a run of pf-capture --tracks and judges which members of its planes are right: by the surfaces of a scene (sim:), by
 depth images (--depth: PNG of 16 bits, one for each frame of the sequence in the order of their names), or else by the run's own tracks,
 triangulated with the true poses (3 degrees of parallax, 0.5 px). Shares are of the features found in a frame: could_fold lie on a true
-plane with eight or more of them, could_tell have turned by 3 degrees as well; earned are on a plane of the run by their own parallax,
-on_trial only began on it. power: of those that could tell, how many are earned. A plane is false where fewer than 70 % of its earned
+plane with eight or more of them, could_tell have 3 degrees of parallax as well; earned are on a plane of the run by their own parallax,
+on_trial only began on it. power: of those, the share that is earned. A plane is false where fewer than 70 % of its earned
 members lie on one true plane.
 --there-and-back reads a run of pf-capture --there-and-back, where each image has two poses that should be one: their distance is
 given as a share of the path's extent, the largest distance between two places of the way there.
 --relative reads a run of pf-capture --relative N: the NEES of its motions over N frames against the truth, per degree of freedom
-(1 is honest). No alignment of frames is needed. With --align none a motion has 6 degrees of freedom. With sim3 it has 5, since the
+(1 expected). No alignment of frames is needed. With --align none a motion has 6 degrees of freedom. With sim3 it has 5, since the
 scale of each is free; with one scale for each map (one_scale) all of a map's motions have 6 each less one.
 
 "coverage" is the share of the sequence's frames that have a tracked pose in the map that is compared, "first_pose_s" the time from the
@@ -49,8 +49,8 @@ def arguments(words):
     parser.add_argument("run", metavar="RUN", nargs="?")
     parser.add_argument("--truth", metavar="FILE", help="a file in one of the forms, or a folder of poses; default: report.json names it")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
-                        help="default: none where report.json says that the run started from a target, se3 where an inertial unit told "
-                             "its lengths, else sim3")
+                        help="default: none where report.json says that the run started from a target, se3 where an inertial unit "
+                             "measured its lengths, else sim3")
     parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
     parser.add_argument("--planes-truth", action="store_true", help="which members of the run's planes are right")
     parser.add_argument("--depth", metavar="DIR", help="depth images, for --planes-truth")
@@ -64,7 +64,7 @@ def arguments(words):
     parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
     parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
     parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
-    parser.add_argument("--version", action="store_true", help="say the version, and do nothing else")  # the program in bin/ does
+    parser.add_argument("--version", action="store_true", help="print the version, and do nothing else")  # the program in bin/ does
     options = parser.parse_args(words)
     if options.run is None and options.json not in (None, "-"):  # --json RUN
         options.run, options.json = options.json, "-"
@@ -84,4 +84,8 @@ def arguments(words):
         parser.error("--planes needs a truth")
     if options.corners and not options.target:
         parser.error("--corners needs --target")
+    if options.target and not options.corners:
+        parser.error("--target needs --corners")
+    if options.skip_frames < 0 or options.skip_frames > 0 and not options.corners:
+        parser.error("--skip-frames is a number of frames of --corners, 0 or more")
     return options

@@ -44,3 +44,19 @@ def add_output_files(path, *names):
             raise Refused(f"{path / name}: is there already, and no earlier run wrote it; move it away")
     with open(path / LIST, "a") as file:
         file.writelines(name + "\n" for name in names)
+
+
+def is_foreign(path, mark):
+    """Whether a file is there that holds something, and not the mark of what pf-eval writes."""
+    path = pathlib.Path(path)
+    return path.is_file() and path.stat().st_size > 0 and mark.encode() not in path.read_bytes()
+
+
+def write(path, text, mark, program="pf-eval"):
+    """mark: a part of the text by which a later run knows that it may take the place of this file."""
+    try:
+        if is_foreign(path, mark):
+            raise Refused(f"{path}: is there and was not written by {program}; name another file")
+        pathlib.Path(path).write_text(text)
+    except OSError as error:
+        raise Refused(f"{path}: cannot be written ({error.strerror})") from error

@@ -8,6 +8,7 @@ import sys
 
 from . import Refused
 from .command_line import OneLineParser
+from .output_folder import write
 
 DESCRIPTION = """Says what is in a map that pf-capture --save-map or pf_save_map has written.
 
@@ -271,15 +272,14 @@ def main(words):
         saved = read(options.file)
         summary = summary_of(saved)
         if options.ply and saved.get("kind") == "continue":
-            raise Refused(f"{options.file}: it is to go on with, and tells no places; save a portable map for --ply")
-        for path, text in ((options.ply, to_ply(saved) if options.ply else ""), (options.json, json.dumps(summary, indent=2) + "\n")):
+            raise Refused(f"{options.file}: it is to go on with, and lists no places; save a portable map for --ply")
+        as_json = summary if options.json == "-" else {**summary, "written_by": "pf-eval"}  # so that a later run may take its place
+        for path, text, mark in ((options.ply, to_ply(saved) if options.ply else "", "comment pf-eval map"),
+                                 (options.json, json.dumps(as_json, indent=2) + "\n", '"written_by": "pf-eval"')):
             if path == "-":
                 sys.stdout.write(text)
             elif path:
-                try:
-                    pathlib.Path(path).write_text(text)
-                except OSError as error:
-                    raise Refused(f"{path}: cannot be written ({error.strerror})") from error
+                write(path, text, mark)
         if options.json != "-":
             print(f"{options.file}\n{text_of(summary)}")
     except Refused as refused:

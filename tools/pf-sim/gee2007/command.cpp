@@ -84,13 +84,19 @@ std::shared_ptr<PaperChoices> add_paper_options(CLI::App* command) {
   add("--target-frames", p->world.target_frames, "after so many the known square is taken away; 0: it stays")
       ->capture_default_str();
   add("--sigma-turn", p->slam.sigma_turn, "of the random walk in one frame [rad]")->capture_default_str();
-  add("--sigma-step", p->slam.sigma_step, "likewise [m]")->capture_default_str();
+  add("--sigma-step", p->slam.sigma_step, "of its translation in one frame [m]")->capture_default_str();
   add("--rho", p->slam.rho, "prior of inverse depth [1/m]")->capture_default_str();
   add("--sigma-rho", p->slam.sigma_rho, "its standard deviation [1/m]")->capture_default_str();
   add("--hypotheses", p->slam.discovery.hypotheses, "of RANSAC in each frame")->capture_default_str();
   command->add_flag("--upright", p->world.upright, "the world's y is the vertical: the pole of eq. 5 in every wall")
       ->group(kGroup);
   return p;
+}
+
+std::string given_paper_option(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && option->get_group() == kGroup) return option->get_name();
+  return "";
 }
 
 int run_paper_command(const CLI::App& command, const PaperChoices& paper, const SharedChoices& c) {
@@ -103,8 +109,10 @@ int run_paper_command(const CLI::App& command, const PaperChoices& paper, const 
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0 || job.world.frames_per_loop < 1)
     return refuse("--seeds, --jobs and --frames must be positive");
   const bool noise = c.sigma_px > 0 && c.sigma_px <= 10, prior = job.slam.rho > 0 && job.slam.sigma_rho > 0;
-  if (!noise || !prior || job.slam.sigma_turn < 0 || job.slam.sigma_step < 0 || c.fov < 0 || c.fov > 150)
-    return refuse("noise, prior or field of view out of range");
+  if (!noise) return refuse("--sigma-px must be above 0 and at most 10");
+  if (!prior) return refuse("--rho and --sigma-rho must be above 0");
+  if (c.fov > 150) return refuse("--fov is at most 150 degrees");
+  if (job.slam.discovery.hypotheses < 1) return refuse("--hypotheses must be at least 1");
   if (!c.look.empty()) job.world.look_inward = c.look == "inward";
   job.world.frames = c.frames > 0 ? c.frames : 2 * job.world.frames_per_loop;
   job.world.sigma_px = job.slam.sigma_px = c.sigma_px;

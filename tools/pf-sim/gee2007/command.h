@@ -26,7 +26,10 @@ struct SharedChoices {
 
 std::shared_ptr<PaperChoices> add_paper_options(CLI::App* command);
 
-/// Runs the cases and reports; the program's exit code. Options of the other filter are refused.
+/// The first option of the paper's filter that was given; "": none.
+std::string given_paper_option(const CLI::App& command);
+
+/// Runs the cases and reports; the program's exit code. Options of the other filter are rejected.
 int run_paper_command(const CLI::App& command, const PaperChoices& paper, const SharedChoices& shared);
 
 }  // namespace pfsim::gee

@@ -34,7 +34,7 @@ Status FilterMemory::load(const SavedMap& saved, std::uint32_t map_id) {
       saved.num_anchors() > settings_.kept.anchors || kPlaneRows * saved.num_planes() > filter_.room())
     return Status::kFull;
   clear();
-  // What planes and places have in common no record tells (StatePlaces): half of the weights for each.
+  // No record holds the correlation between planes and places (StatePlaces): half of the weights for each.
   const Scalar planes = static_cast<Scalar>(saved.num_planes());
   const Scalar parts = planes > Scalar(0) ? Scalar(2) : Scalar(1);
   saved.for_each_plane([&](const SavedPlane& plane) { restore_plane(plane, parts * planes); });

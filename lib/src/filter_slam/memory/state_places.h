@@ -16,9 +16,9 @@ namespace pf {
 class Archive;
 
 /// A place enters the state as a reference camera with the covariance of its record, and its points as points of that camera, so that what
-/// they share is a correlation. Records of several places, and one that enters again, have errors in common that no record tells. The n-th
-/// entry since the state began therefore has n (n + 1) times the covariance of its record, and a point that enters for the m-th time
-/// m (m + 1) times: for whatever correlation,
+/// they share is a correlation. Records of several places, and one that enters again, have common errors, and no record holds their
+/// correlation. The n-th entry since the state began therefore has n (n + 1) times the covariance of its record, and a point that enters
+/// for the m-th time m (m + 1) times: for whatever correlation,
 ///
 ///   C <= diag(C_1 / w_1, C_2 / w_2, ...)   where  sum w_n <= 1,   w_n = 1 / (n (n + 1))
 ///
@@ -59,7 +59,7 @@ class StatePlaces {
     int anchor = -1;            ///< slot of that of its inverse depths, where the camera is
     int entry = 0;              ///< number n of its entry
     std::uint32_t passed = 0;   ///< a bit for each point that has come into view since
-    std::uint32_t brought = 0;  ///< likewise: that has come into the state by it
+    std::uint32_t brought = 0;  ///< a bit for each point that has come into the state by it
     int uses = 0;               ///< how often it has entered
     bool is_on_trial = false;   ///< nothing has been measured of it
   };

@@ -38,11 +38,11 @@ class OwnPlaces {
   /// Begins again with the points of a plane, which has moved.
   void forget(int plane_slot);
   /// Place of a folded feature, and the variance of its distance from a plane with this normal, for pixels that are known to one pixel.
-  /// False where its pixels have told nothing yet.
+  /// False where its pixels have measured nothing yet.
   bool find(int feature, const Vec3& n_W, Vec3* p_W, Scalar* variance) const;
 
-  /// What the pixels of a feature say of its depth along the ray: how much farther than where it was put [m], its variance for pixels that
-  /// are known to one pixel, and the ray. False where they have told nothing yet.
+  /// The depth of a feature by its own pixels, along the ray: how much farther it is than where it was put [m], the variance of that for
+  /// pixels that are known to one pixel, and the ray. False where they have measured nothing yet.
   bool depth(int feature, Scalar* farther, Scalar* variance, Vec3* ray_W) const;
 
   void carry(Archive& archive);  ///< base/archive.h

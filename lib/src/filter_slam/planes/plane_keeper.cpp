@@ -46,7 +46,7 @@ void PlaneKeeper::maintain(bool may_doubt) {
     const int i = (turn + k) % planes;
     if (!map_.planes.used(i) || map_.planes[i].apart) continue;
     ++map_.planes[i].age;
-    // A wall that patches refuse does not wait for its turn: what begins on it misleads.
+    // A wall that patches contradict is judged at once, since what begins on it is wrong.
     if (may_doubt && map_.planes[i].is_refused_by_patches() && !map_.planes[i].doubted) judge_wall(i);
     if (maintained++ == 0) maintain_plane(i, may_doubt);
   }

@@ -38,7 +38,7 @@ class PlaneKeeper {
   void meet_walls();
 
   /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded. may_doubt: the map's
-  /// depths are sure enough to doubt a wall by.
+  /// depths are known well enough to reject a wall.
   void maintain(bool may_doubt = true);
 
   /// Planes that the caller says are vertical. Only where the state has gravity.

@@ -8,11 +8,11 @@
 
 namespace pf {
 
-/// How many features hang on a plane.
+/// How many features are on a plane.
 struct PlanePoints {
   int folded = 0;  ///< fixed ones among them
   int fixed = 0;
-  int on_trial = 0;  ///< of the folded ones, those that began on the plane and have not been believed yet
+  int on_trial = 0;  ///< of the folded ones, those that began on the plane and are not members yet
 };
 
 /// Outline of a plane (entry of the table) in the coordinates of its frame: the part that was seen before, extended by the points that

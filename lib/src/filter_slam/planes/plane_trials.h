@@ -10,9 +10,9 @@
 
 namespace pf {
 
-/// Judges features that began on planes: believes those whose own parallax shows that they lie there, and drops those that it shows
+/// Judges features that began on planes: accepts those as members whose own parallax shows that they lie there, drops those that it shows
 /// elsewhere, or that were found elsewhere kTrialRejections times in a row. Their pixels are then free for a feature of open depth.
-/// What is elsewhere counts as an outlier of the plane; what is believed takes one of these back.
+/// A dropped one counts as an outlier of the plane; a new member takes one of these back.
 class PlaneTrials {
  public:
   PlaneTrials(const Settings& settings, const Filter& filter, Map& map, FeatureKeeper& features,

@@ -22,7 +22,7 @@ inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from ther
 namespace plane_trials {
 inline constexpr Scalar kPixel = 1;          ///< [px] of a match, with what it has in common with other frames'
 inline constexpr Scalar kDoubt = Scalar(1);  ///< log-odds against it from which on it goes, since it bends the plane
-inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
+inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine of ray and plane; with less a depth constrains nothing
 }  // namespace plane_trials
 
 /// Planes that the map had when it began again.

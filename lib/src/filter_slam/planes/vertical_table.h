@@ -12,20 +12,20 @@ namespace pf {
 
 class Archive;
 
-/// Planes that the caller says are vertical (lib/docs/theory/inertial.md). How far a plane is from vertical is a constant, so telling it
-/// again adds no information.
+/// Planes that the caller states to be vertical (lib/docs/theory/inertial.md). How far a plane is from vertical is a constant, so stating
+/// it again adds no information.
 class VerticalTable {
  public:
   VerticalTable(Filter& filter, const Map& map) : filter_(filter), map_(map) {}
 
-  /// Only where gravity is estimated; else nothing can be told.
+  /// Only where gravity is estimated; else there is no table.
   bool layout(Arena& arena);
   void init();
 
   /// A plane of the table is vertical within sigma [rad], which counts once; 0 forgets it. kRange: what is known of plane and gravity
   /// contradicts it; nothing has changed then.
   Status tell(int plane_entry, Scalar sigma);
-  /// Plane `from` is merged into `to`, which is told what it was, unless it was told already.
+  /// Plane `from` is merged into `to`, which takes over its row, unless it has one already.
   void merge(int from, int to);
 
   void carry(Archive& archive);  ///< base/archive.h
@@ -36,7 +36,7 @@ class VerticalTable {
     std::uint32_t id = 0, generation = 0;  ///< of the plane, and of the filter then
     VerticalRow row;
   };
-  /// What was told of a plane, in the map as it is.
+  /// The row of a plane, in the map as it is.
   VerticalRow* row(int plane_entry);
 
   Filter& filter_;

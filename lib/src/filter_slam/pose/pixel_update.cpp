@@ -47,8 +47,8 @@ int PixelUpdate::reject_contradicted(int first, int count, JointFit* fit) {
   return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
 }
 
-/// A point that began at a wall is correlated with it, but may stand before it. Until it is folded into a plane its pixels tell the camera
-/// and its own depth, and the walls are considered: all points before a wall would move it the same way.
+/// A point that began at a wall is correlated with it, but may stand before it. Until it is folded into a plane its pixels update the
+/// camera and its own depth, and the walls are considered: all points before a wall would move it the same way.
 ///
 /// walls: kMaxPlanes slots
 PartlyConsidered PixelUpdate::undecided_walls(int first, int count, int* walls) {

@@ -88,7 +88,7 @@ class PixelUpdate {
   Candidate* candidate_ = nullptr;
   PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
-  /// Scratch behind keep_, of each match: frames in which its feature was measured, up to 255; whether it tells where walls are.
+  /// Scratch behind keep_, of each match: frames in which its feature was measured, up to 255; whether it updates walls.
   unsigned char* scratch_ = nullptr;
   LeaveOneOut others_;
   ProposedPoses proposals_{settings_, filter_};

@@ -26,7 +26,7 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
                                     unsigned char* keep);
 
 /// Weighs the kept matches of such a consensus by all that they have in common, where the points themselves are little known: each match
-/// then tells where the next ones are. fit: their joint fit (PixelUpdate::reject_contradicted).
+/// then constrains the pixels of the next ones. fit: their joint fit (PixelUpdate::reject_contradicted).
 ///
 ///   ln p(r_rest | r_T) = ln N(r; 0, S) - ln N(r_T; 0, S_T)
 ///

@@ -9,21 +9,21 @@
 
 namespace pf {
 
-/// Decides when a wall of the plan is doubted, and when it counts again (lib/docs/theory/walls.md). Keeps nothing; constructed where it
-/// is used.
+/// Decides when a wall of the plan is rejected, and when it is accepted again (lib/docs/theory/walls.md). Keeps nothing; constructed where
+/// it is used.
 class WallDoubt {
  public:
   WallDoubt(const Settings& settings, Filter& filter, Map& map, const Frame& frame, FeatureKeeper& features,
             const CertainPoints& certain)
       : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), certain_(certain) {}
 
-  /// Counts what is seen inside of the wall's outline: points that lie on it, and points that the gate rejects. Doubts the wall where far
-  /// more are rejected; accepts a doubted one again when most of them lie on it. Points behind it are seen through it. Points before it
+  /// Counts what is seen inside of the wall's outline: points that lie on it, and points that the gate rejects. Rejects the wall where far
+  /// more are rejected; accepts it again when most of them lie on it. Points behind it are seen through it. Points before it
   /// may be things that stand there, and count only where they leave too little of the wall to be seen.
   void judge(int plane_entry);
 
  private:
-  /// Removes what the wall's prior has told the filter, and unfolds the wall's points.
+  /// Removes what the wall's prior has contributed, and unfolds the wall's points.
   void doubt(int plane_entry);
 
   const Settings& settings_;
