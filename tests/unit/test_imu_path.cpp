@@ -1,5 +1,6 @@
 // Samples between two times: ends between samples, samples that are late, missing or not there at all.
 #include "filter/imu_path.h"
+#include "filter/sample_sums.h"
 #include "geometry/so3.h"
 #include "same.h"
 #include "support/textured_images.h"
@@ -131,6 +132,30 @@ void test_samples_on_both_sides_of_a_jump_of_the_clock_should_be_coasted_between
   }
 }
 
+SampleSums kept(const Preintegral& sum) {
+  return {sum.dt(), sum.gyro_bias(), Quat(sum.R()), sum.v(), sum.p(), sum.by_bias().cast<float>()};
+}
+
+/// Also where both parts were integrated with other biases.
+void test_two_times_together_should_be_the_time_of_both() {
+  constexpr std::int64_t kMiddle = 20 * kIntervalNs, kEnd = 39 * kIntervalNs;
+  const Vec3 more(Scalar(0.002), Scalar(-0.001), Scalar(0.003));
+  Path whole, before, after;
+  after.sum = Preintegral(kNoise, more, Vec3::Zero());
+  for (Path* path : {&whole, &before, &after})
+    for (int k = 0; k < 40; ++k) path->add(k, Scalar(2));
+  whole.integrate(0, kEnd);
+  before.integrate(0, kMiddle);
+  after.integrate(kMiddle, kEnd);
+  SampleSums both = kept(after.sum);
+  both.begin_with(kept(before.sum));
+  const SampleSums once = kept(whole.sum);
+  TEST_ASSERT_TRUE(std::abs(both.dt - once.dt) < kNear);
+  TEST_ASSERT_TRUE(both.dq_B.angularDistance(once.dq_B) < Scalar(1e-5));
+  TEST_ASSERT_TRUE((both.v - once.v).norm() < Scalar(1e-5) && (both.p - once.p).norm() < Scalar(1e-5));
+  TEST_ASSERT_TRUE((both.by_bias - once.by_bias).norm() < 1e-3F * once.by_bias.norm());
+}
+
 }  // namespace
 
 int main(void) {
@@ -142,5 +167,6 @@ int main(void) {
   RUN_TEST(test_missing_samples_should_be_bridged_with_more_noise);
   RUN_TEST(test_samples_on_both_sides_of_a_jump_of_the_clock_should_be_coasted_between);
   RUN_TEST(test_without_samples_all_time_should_be_coasted_and_a_jump_of_the_clock_should_end);
+  RUN_TEST(test_two_times_together_should_be_the_time_of_both);
   return UNITY_END();
 }

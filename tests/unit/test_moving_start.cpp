@@ -17,9 +17,10 @@ void tearDown(void) {}
 
 namespace {
 
-constexpr double kRate = 300, kSigma = 5e-4, kGravity = 9.81;
+constexpr double kRate = 300, kSigma = 5e-4, kGravity = 9.81, kForce = 2e-3, kSpeed = 1e-3;
 
-/// A hand that waves a unit about; W is turned against gravity. even: at constant velocity, which tells no scale.
+/// A hand that waves a unit about; W is turned against gravity. even: at constant velocity, which tells no scale. from_rest: it begins to
+/// move at the first pose.
 struct Clip {
   Mat3 R_WC(double t) const {
     return exp_so3(Vec3(Scalar(0.3 * std::sin(1.3 * t)), Scalar(0.4 * std::sin(0.9 * t + 1)),
@@ -28,6 +29,9 @@ struct Clip {
   }
   Vec3 p_B(double t) const {
     if (even) return Vec3(Scalar(0.5 * t), Scalar(0.1 * t), 0);
+    if (from_rest && t < 0) return Vec3::Zero();
+    if (from_rest)
+      return Scalar(0.1 * reach * (1 - std::cos(4 * t))) * Vec3(1, Scalar(0.7), Scalar(0.5 * std::sin(2 * t)));
     return Scalar(reach) *
            Vec3(Scalar(0.3 * std::sin(2 * t)), Scalar(0.2 * std::cos(3 * t)), Scalar(0.4 * t + 0.1 * std::sin(4 * t)));
   }
@@ -67,7 +71,18 @@ struct Clip {
     return out;
   }
 
-  bool even = false;
+  /// Of a second before the first of poses that last T.
+  MovingRest rest(double T, SeededRandom& random) const {
+    const Mat3 R_true = R_WC(0) * R_CB, R_WB = exp_so3(Vec3(turn * Scalar(-T / 2))).toRotationMatrix() * R_true;
+    MovingRest out;
+    out.f_W = R_WB * (R_true.transpose() * Vec3(Scalar(-kGravity) * down) + bias + random.normals<3>(kForce));
+    out.f_b = -R_WB;
+    out.sigma_force = Scalar(kForce);
+    out.sigma_speed = Scalar(kSpeed);
+    return out;
+  }
+
+  bool even = false, from_rest = false;
   double reach = 1;                  ///< of the hand
   Vec3 turn = Vec3::Zero();          ///< of the poses' rotations, away from the truth [rad/s]
   Mat3 by_force = Mat3::Identity();  ///< readings, beside their bias
@@ -136,8 +151,9 @@ struct Honesty {
   double sigma_scale = 0;  ///< mean
 };
 
-/// turn: sigma of the rate at which the poses' rotations turn away from the truth.
-Honesty honesty_of(int count, double interval, double turn, const MovingStartNoise& noise, std::uint64_t seed) {
+/// turn: sigma of the rate at which the poses' rotations turn away from the truth. uses_rest: the clip begins at rest, which is told.
+Honesty honesty_of(int count, double interval, double turn, MovingStartNoise noise, std::uint64_t seed,
+                   bool from_rest = false, bool uses_rest = false) {
   SeededRandom random(seed);
   constexpr int kDraws = 40;
   Honesty out;
@@ -145,7 +161,10 @@ Honesty honesty_of(int count, double interval, double turn, const MovingStartNoi
     Clip clip;
     clip.bias = random.normals<3>(0.2);
     clip.turn = random.normals<3>(turn);
+    clip.from_rest = from_rest;
     const std::vector<MovingPose> poses = clip.poses(count, interval, kSigma, random);
+    const MovingRest rest = clip.rest((count - 1) * interval, random);
+    noise.rest = uses_rest ? &rest : nullptr;
     MovingSolution found;
     TEST_ASSERT_TRUE(solve_moving_start(poses.data(), count, noise, &found));
     Eigen::Matrix<double, 6, 1> e;
@@ -188,6 +207,19 @@ void test_poses_that_turn_away_should_be_allowed_for() {
   const Honesty blind = honesty_of(84, 1 / 30.0, 1.5e-3, noise, 336);
   if (!(blind.nees > 12)) std::printf("NEES %.2f without\n", blind.nees);
   TEST_ASSERT_TRUE(blind.nees > 12);
+}
+
+/// A rest before the first pose halves the sigma of the scale in the first second and a half, and stays honest, also where rotations drift.
+void test_a_rest_should_tell_the_scale_sooner() {
+  const Honesty without = honesty_of(46, 1 / 30.0, 3e-4, kNoise, 338, true, false);
+  const Honesty with = honesty_of(46, 1 / 30.0, 3e-4, kNoise, 338, true, true);
+  expect_honest(with);
+  if (!(with.sigma_scale < 0.5 * without.sigma_scale))
+    std::printf("sigma of scale %.4f with a rest, %.4f without\n", with.sigma_scale, without.sigma_scale);
+  TEST_ASSERT_TRUE(with.sigma_scale < 0.5 * without.sigma_scale);
+  MovingStartNoise noise = kNoise;
+  noise.turn = Scalar(1.5e-3);
+  expect_honest(honesty_of(84, 1 / 30.0, 1.5e-3, noise, 339, true, true));
 }
 
 /// What the solution is off by: truth less estimate, as by_turn has it.
@@ -252,6 +284,7 @@ int main(void) {
   RUN_TEST(test_intrinsics_that_are_off_should_put_the_solution_off_by_as_much_as_it_says);
   RUN_TEST(test_noise_of_poses_should_be_that_of_the_solution);
   RUN_TEST(test_poses_that_turn_away_should_be_allowed_for);
+  RUN_TEST(test_a_rest_should_tell_the_scale_sooner);
   RUN_TEST(test_solution_should_know_what_poses_that_turn_away_put_it_off_by);
   RUN_TEST(test_a_camera_at_constant_velocity_should_know_that_it_tells_nothing);
   RUN_TEST(test_too_few_poses_should_be_refused);

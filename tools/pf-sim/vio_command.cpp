@@ -135,7 +135,7 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   runs.rows = rows;
   json out = summarise_frames(runs);
   double gravity = 0, gyro = 0, accel = 0, frames = 0, growth = 0, imu = 0, whole = 0;
-  std::vector<double> drift, again, doubted_at;
+  std::vector<double> drift, again, doubted_at, metric_at;
   double doubted_s = 0, maps = 0;
   int lost = 0, started = 0, refused = 0;
   double tracked = 0;
@@ -151,6 +151,7 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
     lost += s[i].lost;
     refused += s[i].refused;
     started += s[i].metric_frame >= 0;
+    if (s[i].metric_frame >= 0) metric_at.push_back(s[i].metric_frame / c.vio.rate_hz);
     tracked += s[i].frames_tracked;
     if (s[i].doubted_at_s >= 0) doubted_at.push_back(s[i].doubted_at_s);
     doubted_s += s[i].doubted_s;
@@ -163,6 +164,7 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   out["nees_gyro_bias"] = gyro / frames;
   out["nees_accel_bias"] = accel / frames;
   out["drift_share"] = {{"median", quantile(drift, 0.5)}, {"p95", quantile(drift, 0.95)}};
+  out["metric_at_s"] = {{"median", quantile(metric_at, 0.5)}, {"max", quantile(metric_at, 1)}};
   out["path_m"] = of_all(s, c.seeds, &VioSummary::path_m);
   out["scale_error_5s"] = of_all(s, c.seeds, &VioSummary::scale_error_5s);
   out["scale_error"] = of_all(s, c.seeds, &VioSummary::scale_error_end);

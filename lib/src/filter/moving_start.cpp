@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/moving_rows.h"
 #include "filter/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
@@ -11,51 +12,11 @@ namespace pf {
 namespace {
 
 using namespace tuning::moving_start;
+using namespace moving_rows;
 
 constexpr int kLinear = 7;   ///< s, v_0, g
 constexpr int kRefined = 9;  ///< log u, u v_0, d, b_a
-constexpr int kMaxRows = 32;
-
-/// The sums up to one pose; or their means over neighbours.
-struct Sum {
-  Scalar t, t2;     ///< t2: of t^2
-  Scalar variance;  ///< of the position
-  Vec3 p, m, S;
-  Mat3 B;
-
-  static Sum zero() { return {0, 0, 0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero()}; }
-};
-
-/// Cholesky factor of the covariance of positions along an axis, row-major.
-struct Whitener {
-  Scalar L[kMaxRows][kMaxRows];
-
-  bool factor(const Sum* sum, int n, Scalar sigma_0, Scalar q_d, Scalar q_a, Scalar q_r, Scalar q_t) {
-    const Scalar T = sum[n - 1].t;
-    const auto h = [&](Scalar t) { return t * t * (t / 6 - T / 4); };
-    for (int j = 0; j < n; ++j)
-      for (int k = 0; k <= j; ++k) {
-        const Scalar t = sum[k].t, u = sum[j].t;  // t <= u
-        const Scalar G2 = t * t * (3 * u - t) / 6;
-        const Scalar G3 = t * t * t * (t * t - 5 * t * u + 10 * u * u) / 120;
-        Scalar C = sigma_0 * sigma_0 + q_d * q_d * t + q_a * q_a * G2 + q_r * q_r * G3 + q_t * q_t * h(t) * h(u);
-        if (j == k) C += sum[k].variance;
-        for (int i = 0; i < k; ++i) C -= L[j][i] * L[k][i];
-        if (j == k && !(C > Scalar(0))) return false;
-        L[j][k] = j == k ? std::sqrt(C) : C / L[k][k];
-      }
-    return true;
-  }
-  /// x <- L^-1 x of n numbers that are `stride` apart.
-  void apply(Scalar* x, int n, int stride) const {
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < j; ++i) x[j * stride] -= L[j][i] * x[i * stride];
-      x[j * stride] /= L[j][j];
-    }
-  }
-};
-
-/// Rows of the whitened system, three for each pose behind the first; the last column is the right side.
+/// Rows of the whitened system, three for each sum; the last column is the right side.
 template <int kColumns>
 struct System {
   Scalar a[3 * kMaxRows][kColumns + 1];
@@ -75,17 +36,17 @@ struct System {
   }
 };
 
-/// Returns how many sums there are.
-int accumulate(const MovingPose* pose, int count, Sum* sum) {
-  const int most = (count - 2) / kMaxRows + 1;  // poses in a mean
+int poses_in_mean(int count) { return (count - 2) / kMaxSums + 1; }
+
+void accumulate(const MovingPose* pose, int count, Sums* out) {
+  const int most = poses_in_mean(count);
   Vec3 V = Vec3::Zero(), S = Vec3::Zero();
   Mat3 BV = Mat3::Zero(), B = Mat3::Zero();
   Scalar t = 0;
-  int n = 0;
   for (int k = 1; k < count;) {
     const int size = std::min(most, count - k);
     const Scalar part = Scalar(1) / static_cast<Scalar>(size);
-    Sum& mean = sum[n++];
+    Sum& mean = out->sum[out->count++];
     mean = Sum::zero();
     for (const int end = k + size; k < end; ++k) {
       S += V * pose[k].dt + pose[k].Rp;
@@ -101,11 +62,14 @@ int accumulate(const MovingPose* pose, int count, Sum* sum) {
       mean.S += part * S;
       mean.B += part * B;
     }
+    out->T = mean.t;
   }
-  return n;
+  out->poses = out->count;
 }
 
-bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* units, Vec3* v_0, Vec3* g) {
+bool solve_linear(const Sums& sums, const Whitener& whitener, Scalar* units, Vec3* v_0, Vec3* g) {
+  const Sum* const sum = sums.sum;
+  const int n = sums.count;
   System<kLinear> system;
   for (int k = 0; k < n; ++k)
     for (int axis = 0; axis < 3; ++axis) {
@@ -129,19 +93,14 @@ bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* units
   return true;
 }
 
-/// h of a row, as the whitener has it.
-Scalar turned_by(const Sum* sum, int n, int k) {
-  const Scalar t = sum[k].t;
-  return t * t * (t / 6 - sum[n - 1].t / 4);
-}
-
 /// A^T C^-1 u h [g]x of the whitened system.
-Eigen::Matrix<Scalar, kRefined, 3> turned_side(const System<kRefined>& system, const Whitener& whitener, const Sum* sum,
-                                               int n, const Vec3& ug) {
+Eigen::Matrix<Scalar, kRefined, 3> turned_side(const System<kRefined>& system, const Whitener& whitener,
+                                               const Sums& sums, const Vec3& ug) {
+  const int n = sums.count;
   const Mat3 by_rate = hat(ug);
   Eigen::Matrix<Scalar, kRefined, 3> side = Eigen::Matrix<Scalar, kRefined, 3>::Zero();
   Scalar h[kMaxRows];
-  for (int k = 0; k < n; ++k) h[k] = turned_by(sum, n, k);
+  for (int k = 0; k < n; ++k) h[k] = sums.turned(k);
   whitener.apply(h, n, 1);
   for (int k = 0; k < n; ++k)
     for (int axis = 0; axis < 3; ++axis)
@@ -153,12 +112,16 @@ Eigen::Matrix<Scalar, kRefined, 3> turned_side(const System<kRefined>& system, c
 /// A^T C^-1 u S_e of the whitened system, S_e the double sums of what one entry (row, column) of dD_a adds to the specific force: R dD_a dv
 /// and R dD_a dp. R is that of Rv_b = -R dt, which is as good over a few samples.
 Eigen::Matrix<Scalar, kRefined, 1> force_side(const System<kRefined>& system, const Whitener& whitener,
-                                              const MovingPose* pose, int count, int n, int entry) {
-  const int most = (count - 2) / kMaxRows + 1, row = entry / 3, column = entry % 3;  // as in accumulate()
+                                              const MovingPose* pose, int count, const Sums& sums,
+                                              const MovingRest* rest, int entry) {
+  const int most = poses_in_mean(count), row = entry / 3, column = entry % 3, n = sums.count;
   Vec3 V = Vec3::Zero(), S = Vec3::Zero();
-  Scalar mean[3][kMaxRows];
+  Scalar mean[3][kMaxRows] = {};
+  if (rest != nullptr)
+    for (int axis = 0; axis < 3; ++axis)
+      mean[axis][sums.poses] = -rest->f_b(axis, row) * -rest->f_b.col(column).dot(rest->f_W);
   int k = 1;
-  for (int m = 0; m < n; ++m) {
+  for (int m = 0; m < sums.poses; ++m) {
     const int size = std::min(most, count - k);
     Vec3 sum = Vec3::Zero();
     for (const int end = k + size; k < end; ++k) {
@@ -182,17 +145,19 @@ Eigen::Matrix<Scalar, kRefined, 1> force_side(const System<kRefined>& system, co
 
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out) {
   if (count < kMinPoses || count > kMaxMovingPoses) return false;
-  Sum sum[kMaxRows];
-  const int n = accumulate(pose, count, sum);
+  Sums sums;
+  accumulate(pose, count, &sums);
+  if (noise.rest != nullptr) sums.add(*noise.rest);
+  const Sum* const sum = sums.sum;
+  const int n = sums.count;
   Whitener whitener;
   Scalar u = 1;  // units of the map in a metre
   Vec3 v_0, g;
-  const Scalar tilt = noise.gravity * noise.tilt_density, turn = noise.gravity * noise.turn;
   for (int pass = 0; pass < 2; ++pass)  // the second with the noise of the samples in units of the map
-    if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt, u * turn) ||
-        !solve_linear(sum, n, whitener, &u, &v_0, &g) || !(u > Scalar(0)) || !(g.norm() > Scalar(0)))
+    if (!whitener.factor(sums, noise, pose[0].sigma, u) || !solve_linear(sums, whitener, &u, &v_0, &g) ||
+        !(u > Scalar(0)) || !(g.norm() > Scalar(0)))
       return false;
-  if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt, u * turn)) return false;
+  if (!whitener.factor(sums, noise, pose[0].sigma, u)) return false;
 
   Quat q_WG = turn_z_to(g.normalized());
   Vec3 bias = Vec3::Zero();
@@ -234,9 +199,9 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
     }
     if (!cholesky.factor(A)) return false;
     if (step == kSteps) {
-      turned = turned_side(system, whitener, sum, n, u * g);
+      turned = turned_side(system, whitener, sums, u * g);
       for (int e = 0; noise.of_force != nullptr && e < Intrinsics::kAccelRows; ++e)
-        forced.col(e) = u * force_side(system, whitener, pose, count, n, e);
+        forced.col(e) = u * force_side(system, whitener, pose, count, sums, noise.rest, e);
       break;
     }
     const Eigen::Matrix<Scalar, kRefined, 1> x = cholesky.solve(b);
@@ -264,7 +229,7 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   for (int i = 0; i < MovingSolution::kRows; ++i) out->by_force.row(i) = by_force.row(kAt[i]);
   out->by_force.row(0) = -out->by_force.row(0);
   out->turn_variance = noise.turn * noise.turn;
-  out->span = sum[n - 1].t;
+  out->span = sums.T;
   for (int i = 1; i < MovingSolution::kRows; ++i)
     out->covariance(0, i) = out->covariance(i, 0) = -out->covariance(i, 0);  // log scale = -log u
   if (noise.of_force == nullptr) return true;

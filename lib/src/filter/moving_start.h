@@ -19,6 +19,14 @@ struct MovingPose {
   Mat3 Rp_b = Mat3::Zero();  ///< of R dp, the same
 };
 
+/// What is known of the body at the first of the poses, where it was at rest: R_WB (D_a a - D_a b_a) + g = 0, and no velocity.
+struct MovingRest {
+  Vec3 f_W = Vec3::Zero();  ///< mean specific force, D_a a in W [m/s^2]
+  Mat3 f_b = Mat3::Zero();  ///< of f_W by the accelerometer's bias
+  Scalar sigma_force = 1;   ///< of each axis [m/s^2]
+  Scalar sigma_speed = 1;   ///< of each axis of the velocity, in units of the map [1/s]
+};
+
 struct MovingStartNoise {
   Scalar gravity = 0;        ///< [m/s^2]
   Scalar drift = 0;          ///< of p_W, as the points that it is known by change, in units of the map [/sqrt(s)]
@@ -29,6 +37,7 @@ struct MovingStartNoise {
   /// Covariance of the errors of the accelerometer's intrinsics (model/intrinsics.h); null where these are exact.
   using OfForce = Eigen::Matrix<Scalar, Intrinsics::kAccelRows, Intrinsics::kAccelRows>;
   const OfForce* of_force = nullptr;
+  const MovingRest* rest = nullptr;  ///< null where the body moved at the first pose, or may have
 };
 
 /// What was found. Covariance over (log scale, d, b_a): d as in model/body.h.
@@ -75,7 +84,11 @@ inline constexpr int kMaxMovingPoses = 96;
 ///
 /// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses whose rotation drifts, right at T / 2. A
 /// rate rho of that, theta = rho (t - T / 2), leaves r = u h [g]x rho and an error by_turn rho of the solution. With many poses, rows are
-/// means over a few neighbours. A misfit above one widens the covariance. False where there are too few poses or the system is singular.
+/// means over a few neighbours. A rest at the first pose adds six rows, with h = -T / 2 and 0,
+///
+///   0 = u (f_W + f_b b_a + g),   0 = u v_0
+///
+/// A misfit above one widens the covariance. False where there are too few poses or the system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
 
 }  // namespace pf

@@ -91,6 +91,8 @@ ScaleChange UnitKeeper::look_for_scale(Scalar depth, Scalar correlation_frames) 
 /// Frames are kept while the delay is open, and judged once it is not.
 ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlation_frames) {
   MovingFrame told;
+  told.view = {filter_.state().body.q_WC, filter_.state().body.p_W};
+  told.is_placed = true;
   const bool open = watch_.is_open() && !is_rejected(watch_.mode());
   told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && (filter_.uses_samples() || open) &&
               reads_force();

@@ -21,6 +21,11 @@ void carry_still(Archive& archive, StillReading& still) {
   archive.numbers(gyro, accel, sigma_gyro, sigma_accel);
 }
 
+void carry_rest(Archive& archive, RestReading& rest) {
+  auto& [gyro, accel, sigma_gyro, sigma_accel, sigma_speed, sigma_accel_bias, gravity] = rest;
+  archive.numbers(gyro, accel, sigma_gyro, sigma_accel, sigma_speed, sigma_accel_bias, gravity);
+}
+
 void carry_fit(Archive& archive, RateFit& fit) {
   auto& [count, delay, sigma_delay, R_CB, sigma_turn, scale, left, next_left, turning, left_mirrored, mirrored,
          at_end] = fit;
@@ -64,15 +69,20 @@ void ForceCheck::carry(Archive& archive) {
 void MovingStart::carry(Archive& archive) {
   auto& [count, frames, t_ns, map_id, sigma_scale, reversed, delay_sigma, refused, left, first, end, correlation, view,
          link, pose] = data_;
+  auto& [is_first, reading, halvings] = rest_;
   archive.within(count, 0, kMaxMovingPoses);
+  archive.within(halvings, 0, kMaxHalvings);
   for (int* index : {&left, &first, &end}) archive.within(*index, 0, count);
   archive.counts(frames, refused);
   archive.any(t_ns, map_id);
-  archive.flags(reversed);
+  archive.flags(reversed, is_first);
   archive.numbers(sigma_scale, delay_sigma, correlation);
+  carry_rest(archive, reading);
   for (int k = 0; k < count; ++k) {
-    auto& [q_WC, p_W, covariance, view_ns, dt, gyro_bias, dq_B, v, p, by_bias, pixels, seen] = view[k];
+    auto& [is_placed, q_WC, p_W, covariance, view_ns, samples, pixels, seen] = view[k];
+    auto& [dt, gyro_bias, dq_B, v, p, by_bias] = samples;
     archive.numbers(q_WC, p_W, covariance, dt, gyro_bias, dq_B, v, p, by_bias);
+    archive.flags(is_placed);
     archive.any(view_ns);
     archive.within(pixels, 0, kMaxPixels);
     for (int i = 0; i < pixels; ++i) {

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter/imu_path.h"
-#include "geometry/pnp.h"
 #include "geometry/so3.h"
 #include "inertial/tuning.h"
 
@@ -19,93 +17,6 @@ constexpr int kSignEvery = 4;  ///< solutions in a row that there are none of, f
 
 }  // namespace
 
-/// Integrates the samples between a time and the view. False where they are missing.
-bool MovingStart::integrate(std::int64_t from_ns, View* view) const {
-  const Body& body = filter_.state().body;
-  const Vec3 gyro_bias = filter_.uses_samples() ? body.gyro_bias : Vec3(Vec3::Zero());
-  Preintegral samples(motion_.unit_noise().now(), gyro_bias, Vec3::Zero(), filter_.state().mounting.intrinsics);
-  ImuReading now;
-  if (integrate_samples(imu_, motion_.on_unit_clock(from_ns), motion_.on_unit_clock(view->t_ns), Coasting(), &samples,
-                        &now) > Scalar(0))
-    return false;
-  view->dt = samples.dt();
-  view->gyro_bias = gyro_bias;
-  view->dq_B = Quat(samples.R());
-  view->v = samples.v();
-  view->p = samples.p();
-  view->by_bias = samples.by_bias().cast<float>();
-  return true;
-}
-
-void MovingStart::integrate_again() {
-  int first = data_.count > 0 ? data_.count - 1 : 0;
-  while (first > 0 && integrate(data_.view[first - 1].t_ns, &data_.view[first])) --first;
-  std::copy(data_.view + first, data_.view + data_.count, data_.view);
-  data_.count -= first;
-  data_.left = data_.first = data_.end = 0;
-}
-
-/// Keeps this frame: its inliers, and the samples since the last one that is kept. False where samples are missing.
-bool MovingStart::add(const MovingPoints& points) {
-  const State& state = filter_.state();
-  if (data_.count == kMaxMovingPoses) {
-    std::copy(data_.view + 1, data_.view + data_.count--, data_.view);
-    for (int* index : {&data_.left, &data_.first, &data_.end}) *index = std::max(0, *index - 1);
-  }
-  View& view = data_.view[data_.count];
-  view = View();
-  view.q_WC = state.body.q_WC;
-  view.p_W = state.body.p_W;
-  const std::int64_t t_ns = frame_.report.t_ns;
-  view.t_ns = t_ns;
-  if (data_.count > 0 && !integrate(data_.t_ns, &view)) return false;
-  for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
-    const Match& match = frame_.match(i);
-    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;  // it may have left the map since
-    const Vec2 pixel = points.pixel_of(points.owner, match);
-    view.seen[view.count++] = {match.id, static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-  }
-  data_.t_ns = t_ns;
-  data_.frames = 0;
-  ++data_.count;
-  return true;
-}
-
-/// Pose of a view against the present map, with the noise that its pixels show.
-bool MovingStart::locate(const MovingPoints& points, View* view) const {
-  PnpPoint point[kMaxPixels];
-  int count = 0;
-  for (int i = 0; i < view->count; ++i) {
-    Vec3 p_W;
-    if (!points.find(points.owner, view->seen[i].id, &p_W)) continue;
-    point[count++] = {p_W, Scalar(1), Vec2(static_cast<Scalar>(view->seen[i].x), static_cast<Scalar>(view->seen[i].y))};
-  }
-  if (count < kMinPixels) return false;
-  PoseEstimate pose;
-  pose.q_WC = view->q_WC;
-  pose.p_WC = view->p_W;
-  if (!refine_pnp(points.camera, point, count, nullptr, {settings_.sigma_px, kHuber, kRounds}, &pose)) return false;
-  view->q_WC = pose.q_WC;
-  view->p_W = pose.p_WC;
-  const Scalar noise = pose.rms_px / settings_.sigma_px;
-  const Scalar pixels = static_cast<Scalar>(count);
-  view->covariance = (pose.covariance * (noise * noise * pixels / (pixels - 3))).cast<float>();
-  return true;
-}
-
-/// Goes on with the sweep, or begins one: of all views behind the last one that sees too little of the map. True where it is through.
-bool MovingStart::sweep(const MovingPoints& points) {
-  if (data_.left == 0) data_.left = data_.first = data_.end = data_.count;
-  for (int i = 0; i < kLocated && data_.left > 0; ++i) {
-    if (!locate(points, &data_.view[data_.left - 1])) {
-      data_.left = 0;
-      break;
-    }
-    data_.first = --data_.left;
-  }
-  return data_.left == 0;
-}
-
 /// Smooths the rotations of the views by pixels and gyroscope together. Returns the gyroscope's bias.
 Vec3 MovingStart::smooth() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
@@ -117,16 +28,16 @@ Vec3 MovingStart::smooth() {
   for (int k = data_.first; k < data_.end; ++k) {
     const View& view = data_.view[k];
     RotationLink& link = data_.link[k];
-    const Mat3 by_bias = view.by_bias.topLeftCorner<3, 3>().cast<Scalar>();
-    const Quat dq_B = exp_so3(Vec3(by_bias * (gyro_bias - view.gyro_bias))) * view.dq_B;
+    const Mat3 by_bias = view.samples.by_bias.topLeftCorner<3, 3>().cast<Scalar>();
+    const Quat dq_B = exp_so3(Vec3(by_bias * (gyro_bias - view.samples.gyro_bias))) * view.samples.dq_B;
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
     link.dq = q_CB * dq_B * q_CB.conjugate();
     // An error mu of the axes rotates the step by mu x step, an error e of the scale lengthens it by e, and an error e of the delay moves
     // both ends: (w_0 - w_1) e.
     const Vec3 step = log_so3(dq_B), rate_before = rate;
-    if (view.dt > Scalar(0)) rate = step / view.dt;
-    link.step_variance = density * density * view.dt + of_turn * step.squaredNorm() +
+    if (view.samples.dt > Scalar(0)) rate = step / view.samples.dt;
+    link.step_variance = density * density * view.samples.dt + of_turn * step.squaredNorm() +
                          (k > data_.first + 1 ? of_delay * (rate - rate_before).squaredNorm() : Scalar(0));
     link.by_bias = R_CB * dq_B.conjugate().toRotationMatrix() * by_bias;
   }
@@ -152,15 +63,31 @@ int MovingStart::collect() {
     pose.m_W = link.q_WC * settings_.unit.mounting.p_C;
     if (k == 0) continue;
     const Mat3 R_WB = data_.link[data_.first + k - 1].q_WC.toRotationMatrix() * R_CB;
-    const Eigen::Matrix<Scalar, 9, 6> by_bias = view.by_bias.cast<Scalar>();
-    const Vec3 more = gyro_bias - view.gyro_bias;
-    pose.dt = view.dt;
-    pose.Rv = R_WB * (view.v + by_bias.block<3, 3>(3, 0) * more);
-    pose.Rp = R_WB * (view.p + by_bias.block<3, 3>(6, 0) * more);
+    const Eigen::Matrix<Scalar, 9, 6> by_bias = view.samples.by_bias.cast<Scalar>();
+    const Vec3 more = gyro_bias - view.samples.gyro_bias;
+    pose.dt = view.samples.dt;
+    pose.Rv = R_WB * (view.samples.v + by_bias.block<3, 3>(3, 0) * more);
+    pose.Rp = R_WB * (view.samples.p + by_bias.block<3, 3>(6, 0) * more);
     pose.Rv_b = R_WB * by_bias.block<3, 3>(3, 3);
     pose.Rp_b = R_WB * by_bias.block<3, 3>(6, 3);
   }
   return count;
+}
+
+/// What a rest tells of the first pose, which is one of it. Its bias walks on until the poses' middle.
+MovingRest MovingStart::rest_of_first(Scalar depth, Scalar span) const {
+  const RestReading& reading = rest_.reading;
+  const RotationLink& link = data_.link[data_.first];
+  const Mat3 R_WB = link.q_WC.toRotationMatrix() * filter_.state().mounting.R_CB;
+  const Mat3& D_a = filter_.state().mounting.intrinsics.D_a;
+  const Scalar walk = motion_.unit_noise().now().accel_walk;
+  MovingRest rest;
+  rest.f_W = R_WB * (D_a * reading.accel);
+  rest.f_b = -(R_WB * D_a);
+  rest.sigma_force = std::sqrt(reading.sigma_accel * reading.sigma_accel +
+                               reading.gravity * reading.gravity * link.variance + walk * walk * span / 2);
+  rest.sigma_speed = reading.sigma_speed * depth / settings_.start_depth;
+  return rest;
 }
 
 /// Whether the opposite accelerations would explain the motion.
@@ -170,8 +97,10 @@ void MovingStart::look_for_sign(int count, const MovingStartNoise& noise) {
       for (Vec3* of : {&data_.pose[k].Rv, &data_.pose[k].Rp}) *of = -*of;
   };
   MovingSolution solution;
+  MovingStartNoise without_rest = noise;
+  without_rest.rest = nullptr;
   reverse();
-  data_.reversed = solve_moving_start(data_.pose, count, noise, &solution) &&
+  data_.reversed = solve_moving_start(data_.pose, count, without_rest, &solution) &&
                    solution.sigma_scale() < kLateSigmaScale && solution.misfit < kMaxMisfit;
   reverse();
 }
@@ -180,6 +109,8 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
                               MovingSolution* solution) {
   MovingSolution half[2];
   const int middle = count / 2;
+  MovingStartNoise of_second = noise;
+  of_second.rest = nullptr;
   data_.sigma_scale = 0;
   if (!solve_moving_start(pose, count, noise, solution)) {
     if (++data_.refused % kSignEvery == 0) look_for_sign(count, noise);
@@ -193,7 +124,7 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
     return false;
   if (!(solution->misfit < kMaxMisfit)) return false;
   if (!solve_moving_start(pose, middle + 1, noise, &half[0]) ||
-      !solve_moving_start(pose + middle, count - middle, noise, &half[1]))
+      !solve_moving_start(pose + middle, count - middle, of_second, &half[1]))
     return false;
   const Scalar of_scale = half[0].covariance(0, 0) + half[1].covariance(0, 0);
   const Scalar of_gravity =
@@ -239,8 +170,8 @@ Scalar MovingStart::mean_rate2() const {
   Scalar sum = 0, time = 0;
   for (int k = data_.first + 1; k < data_.end; ++k) {
     const View& view = data_.view[k];
-    sum += log_so3(view.dq_B).squaredNorm() / view.dt;
-    time += view.dt;
+    sum += log_so3(view.samples.dq_B).squaredNorm() / view.samples.dt;
+    time += view.samples.dt;
   }
   return time > Scalar(0) ? sum / time : Scalar(0);
 }
@@ -255,11 +186,10 @@ bool MovingStart::note(const MovingFrame& told, const MovingPoints& points, Movi
   if (!told.keep || told.map_id != data_.map_id) init();
   data_.map_id = told.map_id;
   ++data_.frames;
-  if (!told.keep ||
-      (data_.count > 0 && seconds(elapsed_ns(data_.t_ns, frame_.report.t_ns)) < static_cast<double>(kInterval)))
-    return false;
+  const double interval = static_cast<double>(kInterval) * (1 << rest_.halvings);
+  if (!told.keep || (data_.count > 0 && seconds(elapsed_ns(data_.t_ns, frame_.report.t_ns)) < interval)) return false;
   data_.correlation = std::max(Scalar(1), told.correlation / static_cast<Scalar>(data_.frames));
-  if (!add(points)) {
+  if (!add(told, points)) {
     init();
     return false;
   }
@@ -271,7 +201,7 @@ bool MovingStart::note(const MovingFrame& told, const MovingPoints& points, Movi
   }
   if (!told.judge || data_.count < kMinPoses || !sweep(points)) return false;
   Scalar span = 0;
-  for (int k = data_.first + 1; k < data_.end; ++k) span += data_.view[k].dt;
+  for (int k = data_.first + 1; k < data_.end; ++k) span += data_.view[k].samples.dt;
   if (data_.end - data_.first < kMinPoses || span < kMinSpan) return false;
   MovingStartNoise noise;
   noise.gravity = settings_.unit.gravity;
@@ -288,7 +218,13 @@ bool MovingStart::note(const MovingFrame& told, const MovingPoints& points, Movi
     of_force = force_covariance();
     noise.of_force = &of_force;
   }
-  return is_accepted(data_.pose, collect(), noise, told.patient, solution);
+  const int count = collect();
+  MovingRest rest;
+  if (rest_.is_first && data_.first == 0) {
+    rest = rest_of_first(told.depth, span);
+    noise.rest = &rest;
+  }
+  return is_accepted(data_.pose, count, noise, told.patient, solution);
 }
 
 }  // namespace pf

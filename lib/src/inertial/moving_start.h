@@ -3,10 +3,12 @@
 #include <cstdint>
 
 #include "filter/moving_start.h"
+#include "filter/sample_sums.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 #include "geometry/rotation_smoother.h"
 #include "inertial/body_motion.h"
+#include "vision/appearance.h"
 
 /// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames and the integrals of the samples in
 /// between, estimates the poses of these frames anew against the present map, and solves for scale, gravity and the accelerometer's bias
@@ -18,6 +20,8 @@ class Archive;
 
 /// Inputs of a frame beside its matches.
 struct MovingFrame {
+  CameraView view;
+  bool is_placed;        ///< that is a pose in a map with depths
   bool keep;             ///< it is tracked in a map that samples may scale
   bool judge;            ///< depths of that map are known up to scale
   std::uint32_t map_id;  ///< of that map
@@ -46,13 +50,19 @@ class MovingStart {
     data_.count = data_.end = data_.left = 0;
     data_.sigma_scale = 0;
     data_.reversed = false;
+    rest_ = Rest();
   }
   /// After a change of the unit's delay: integrates the samples between the views again. Views without samples are dropped.
   void integrate_again();
+  /// Readings of the rest that the views begin with, if there was one; null: none.
+  const RestReading* rest() const { return rest_.is_first ? &rest_.reading : nullptr; }
   /// Sigma of the log scale of the last solution that was not accepted; 0: there was none.
   Scalar sigma_scale() const { return data_.sigma_scale; }
   /// True where accelerations with the opposite sign explain the motion, and the readings do not.
   bool is_reversed() const { return data_.reversed; }
+  /// Before this frame is noted: the camera has been at rest from since_ns up to it, or almost, since a motion's beginning is not seen. The
+  /// views begin with one of that rest, and its readings hold for their solution.
+  void begin_at_rest(const RestReading& rest, std::int64_t since_ns);
   /// Notes a frame. True where *solution has small sigmas, fits, and both halves of the poses agree.
   bool note(const MovingFrame& told, const MovingPoints& points, MovingSolution* solution);
 
@@ -60,6 +70,7 @@ class MovingStart {
 
  private:
   static constexpr int kMaxPixels = 64;
+  static constexpr int kMaxHalvings = 3;  ///< 0.24 s between two views, for which samples are held
   using Float6 = Eigen::Matrix<float, 6, 6>;
 
   /// A frame that is kept, with large arrays in float.
@@ -68,16 +79,12 @@ class MovingStart {
       std::uint32_t id;
       float x, y;  ///< [px]
     };
+    bool is_placed = false;  ///< by pixels, in a map with depths
     Quat q_WC = Quat::Identity();
     Vec3 p_W = Vec3::Zero();
     Float6 covariance = Float6::Zero();  ///< as of a PoseEstimate
-    // Samples since the view before, in axes of the unit there, integrated without accelerometer bias.
     std::int64_t t_ns = 0;
-    Scalar dt = 0;
-    Vec3 gyro_bias = Vec3::Zero();
-    Quat dq_B = Quat::Identity();
-    Vec3 v = Vec3::Zero(), p = Vec3::Zero();
-    Eigen::Matrix<float, 9, 6> by_bias = Eigen::Matrix<float, 9, 6>::Zero();  ///< of (phi, v, p)
+    SampleSums samples;  ///< since the view before
     int count = 0;
     Seen seen[kMaxPixels];
   };
@@ -100,12 +107,21 @@ class MovingStart {
     MovingPose pose[kMaxMovingPoses];
   };
 
-  bool add(const MovingPoints& points);
+  struct Rest {
+    bool is_first = false;  ///< the first view is one of a rest, with these readings
+    RestReading reading;
+    int halvings = 0;  ///< of the views since, each of which doubles the time between two
+  };
+
+  bool add(const MovingFrame& told, const MovingPoints& points);
+  void drop(int count);
+  void halve();
   bool integrate(std::int64_t from_ns, View* view) const;
   bool locate(const MovingPoints& points, View* view) const;
   bool sweep(const MovingPoints& points);
   Vec3 smooth();
   int collect();
+  MovingRest rest_of_first(Scalar depth, Scalar span) const;
   Scalar mean_variance(int row) const;
   Scalar turn_variance() const;
   Scalar scale_variance() const;
@@ -123,6 +139,7 @@ class MovingStart {
   const ImuLog& imu_;
   const BodyMotion& motion_;
   Data data_;
+  Rest rest_;
 };
 
 }  // namespace pf

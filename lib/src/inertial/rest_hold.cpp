@@ -13,7 +13,6 @@ using namespace tuning::rest;
 
 namespace {
 
-constexpr double kLate = 0.1;                         ///< [s] for which a motion may begin unseen
 constexpr double kBySamples = 3;                      ///< [s] for which samples alone measure motion well,
 constexpr Scalar kRotationBySamples = Scalar(0.002);  ///< [rad] and as long as the rotation is known so well
 constexpr Scalar kSpeedBySamples = Scalar(0.02);      ///< [m/s] and the velocity

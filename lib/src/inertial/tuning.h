@@ -61,6 +61,7 @@ inline constexpr Scalar kOtherAxes = Scalar(0.35);       ///< [rad] that axes ar
 /// A camera at rest.
 namespace rest {
 inline constexpr Scalar kTime = Scalar(1);                ///< [s] at rest before it counts
+inline constexpr double kLate = 0.1;                      ///< [s] for which a motion may begin unseen
 inline constexpr int kMinSamples = 20;                    ///< in that time
 inline constexpr Scalar kMaxScatter = Scalar(2);          ///< standard deviations that the densities allow
 inline constexpr Scalar kMaxGyroBias = Scalar(0.3);       ///< [rad/s] that a gyro at rest may show

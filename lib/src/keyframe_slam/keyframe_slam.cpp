@@ -146,7 +146,6 @@ void KeyframeSlam::measure() {
   if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report)) {
     const CameraView before = motion_.view();
     if (!record_.improve()) return;
-    unit_.begin_map();
     placement_.keep_anchors(before, motion_.view());
     mapping_.adjust();
     const CameraView now = motion_.view();

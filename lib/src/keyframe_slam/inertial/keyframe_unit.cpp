@@ -16,6 +16,15 @@ constexpr double kPatience = 5;  ///< [s] of a map, after which waiting for a be
 constexpr Scalar kKnownLength = Scalar(1e-3);       ///< share to which a length of the map is its own unit
 constexpr FilterCapacity kCapacity = {0, 1, 8, 0};  ///< but for the rows of the state
 
+/// Where the map's unit is the metre.
+void begin_in_metres(const RestReading& rest, const Settings& settings, const Mounting& known, Filter* filter) {
+  Transition transition;
+  begin_at_rest(filter->state().body, settings.body, known, rest, &transition);
+  filter->predict(transition);
+  filter->set_mounting(known);
+  filter->set_metric();
+}
+
 }  // namespace
 
 void KeyframeUnit::layout(Arena& arena) {
@@ -59,7 +68,8 @@ void KeyframeUnit::begin_map() {
   parts_->moving.init();
 }
 
-/// With the body where the map has it, in the map's coordinates.
+/// With the body where the map has it, in the map's coordinates. Views that were kept before the depths are those of a start from a rest:
+/// without one their rotations, by a map that was just begun, would give the gyroscope's bias too certainly.
 bool KeyframeUnit::begin(const MapOfUnit& map) {
   using namespace tuning::inertial;
   using tuning::filter_start::kStartRate;
@@ -78,11 +88,15 @@ bool KeyframeUnit::begin(const MapOfUnit& map) {
   const auto set_sigma = [&](BodyPart part, int rows, Scalar sigma) {
     for (int i = layout.row(part); i < layout.row(part) + rows; ++i) P[i * dim + i] = sigma * sigma;
   };
-  set_sigma(BodyPart::kGyroBias, 3, filter.uses_samples() ? kGyroBias : kStartRate);
+  Body body = motion_.body();
+  const RestReading* const rest = parts_->moving.rest();
+  if (rest == nullptr) parts_->moving.init();
+  if (rest != nullptr && filter.uses_samples()) body.gyro_bias = rest->gyro;
+  const Scalar of_gyro = rest != nullptr ? rest->sigma_gyro : kGyroBias;
+  set_sigma(BodyPart::kGyroBias, 3, filter.uses_samples() ? of_gyro : kStartRate);
   set_sigma(BodyPart::kAccelBias, 3, kAccelBias);
   set_sigma(BodyPart::kGravity, 2, kGravity);
   if (layout.estimates_unit()) parts_->mounting.put_covariance(P);
-  Body body = motion_.body();
   parts_->motion.begin(frame_.report.t_ns, &body);
   filter.set_body(body, P);
   if (!parts_->ruler.begin(body.p_W, map.median_depth, kKnownLength)) return false;
@@ -94,6 +108,7 @@ bool KeyframeUnit::begin(const MapOfUnit& map) {
 
 bool KeyframeUnit::predict(std::int64_t before_ns, bool follows, bool coasting_or_lost, bool nothing_measured,
                            Scalar median_depth) {
+  if (parts_ != nullptr && !data_.has_begun) parts_->motion.unit_noise().note_samples();
   if (!has_begun()) return false;
   const std::int64_t t_ns = frame_.report.t_ns;
   data_.follows = follows;
@@ -211,31 +226,32 @@ MovingPoints KeyframeUnit::moving_points() const {
   return {this, map_.camera(), find, pixel_of};
 }
 
+/// Frames are kept while the delay or the depths are open, and judged once they are not.
 bool KeyframeUnit::look_for_scale(const MapOfUnit& map, MovingSolution* solution) {
-  if (!has_begun()) return false;
+  if (parts_ == nullptr) return false;
   Filter& filter = parts_->filter;
   const bool open = parts_->watch.is_open() && !is_rejected(parts_->watch.mode());
   const bool has_axes = !open || !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
-  parts_->forces.note(filter.state().body.q_WC.toRotationMatrix() * filter.state().mounting.R_CB,
-                      has_axes && map.is_tracked);
+  const CameraView view = motion_.view();
+  parts_->forces.note(view.q_WC.toRotationMatrix() * filter.state().mounting.R_CB, has_axes && map.is_tracked);
   Scalar value;
   const bool reads_force = parts_->forces.reason(&value) == UnitReason::kNone;
+  const bool is_used = filter.uses_samples() || open;
   RestReading rest;
-  if (filter.uses_samples() && parts_->rest.note(map.is_tracked, &rest) && !filter.is_metric() && map.knows_scale &&
-      reads_force) {
-    Transition transition;
-    const Mounting known = parts_->mounting.now();
-    begin_at_rest(filter.state().body, settings_.body, known, rest, &transition);
-    filter.predict(transition);
-    filter.set_mounting(known);
-    filter.set_metric();
-    return true;
+  if (is_used && parts_->rest.note(map.is_tracked, &rest) && reads_force && !filter.is_metric()) {
+    if (!map.knows_scale) {
+      parts_->moving.begin_at_rest(rest, parts_->rest.begin_ns());
+    } else if (data_.has_begun && filter.uses_samples()) {
+      begin_in_metres(rest, settings_, parts_->mounting.now(), &filter);
+      return true;
+    }
   }
-  if (filter.uses_samples()) parts_->hold.end_frame(frame_.report.t_ns);
+  if (data_.has_begun && filter.uses_samples()) parts_->hold.end_frame(frame_.report.t_ns);
   MovingFrame told;
-  told.keep =
-      map.is_tracked && !filter.is_metric() && !map.knows_scale && (filter.uses_samples() || open) && reads_force;
-  told.judge = !map.is_pending && filter.uses_samples();
+  told.view = view;
+  told.is_placed = data_.has_begun;
+  told.keep = map.is_tracked && !filter.is_metric() && !map.knows_scale && is_used && reads_force;
+  told.judge = data_.has_begun && !map.is_pending && filter.uses_samples();
   told.patient = seconds(elapsed_ns(data_.begin_ns, frame_.report.t_ns)) < kPatience;
   told.map_id = map.map_id;
   told.depth = map.median_depth;

@@ -38,7 +38,7 @@ class KeyframeUnit {
 
   void layout(Arena& arena);
   void init();
-  /// The map is discarded, or begins again in another unit.
+  /// The map is discarded.
   void begin_map();
 
   /// True where samples, or their filter, have predicted the body to this frame. follows: the frame before was tracked.
