@@ -43,7 +43,7 @@ def record_and_replay(root):
     expect_same(root / "wl", root / "vl", "the window with its lens on a recording")
     result = subprocess.run([PROGRAM, *QUIET, "--source", "sim:desk", "--record", root / "all", "--out", root / "c"], text=True,
                             capture_output=True, check=False)
-    if result.returncode != 1 or "recording already" not in result.stderr:
+    if result.returncode != 2 or "recording already" not in result.stderr:
         fail(f"a recording was written over: {result.returncode} {result.stderr}")
 
 

@@ -21,7 +21,8 @@ def require(condition, message):
 
 def report(folder, *options):
     path = folder / "vio.json"
-    options = options if "--estimate" in options or "--unit" in options or "--axes" in options else (*options, *EXACT)
+    own = ("--estimate", "--unit", "--axes", "--no-imu")
+    options = options if any(name in options for name in own) else (*options, *EXACT)
     text = run(BIN / "pf-sim", "vio", "--seeds", str(SEEDS), "--json", path, *options)
     print(text)
     return json.loads(path.read_text()), text

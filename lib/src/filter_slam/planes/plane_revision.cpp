@@ -21,6 +21,13 @@ PlaneFrame frame_of(const MajorityPlane& plane) {
   return frame;
 }
 
+/// The part of x along b, from none to all of b: a b with a = xᵀ W b / bᵀ W b, 0 <= a <= 1, W the inverse of the variances.
+Vec3 part_in(const Vec3& x, const Vec3& b, const Vec3& variance) {
+  const Vec3 Wb = b.cwiseQuotient(variance);
+  const Scalar whole = b.dot(Wb);
+  return whole > Scalar(0) ? Vec3(b * std::clamp(x.dot(Wb) / whole, Scalar(0), Scalar(1))) : Vec3(Vec3::Zero());
+}
+
 }  // namespace
 
 int PlaneRevision::list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const {
@@ -83,12 +90,13 @@ void PlaneRevision::straighten(int plane_entry, const MajorityPlane& to) {
   const State& state = filter_.state();
   const Block& block = state.block[entry.slot];
   const PlaneFrame about = frame_of(to), own = state.frame_of(block);
+  const Vec3 variance(to.variance(1), to.variance(2), to.variance(0));
   Vec3 apart, x;  // from the majority's plane
   Mat3 J;
   if (!reframe_plane(own, block.xyz(), about, &apart)) return;
-  apart -= Vec3(to.bent(1), to.bent(2), to.bent(0));
+  apart -= part_in(apart, Vec3(to.bent(1), to.bent(2), to.bent(0)), variance);
   if (!reframe_plane(about, apart, own, &x, &J)) return;
-  const Vec3 step = x - block.xyz(), variance(to.variance(1), to.variance(2), to.variance(0));
+  const Vec3 step = x - block.xyz();
   const Mat3 D = kTwoSigma2 * Mat3(variance.asDiagonal()) + apart * apart.transpose();
   const Mat3 Q = J * D * J.transpose() + step * step.transpose();
   if (!filter_.slide_plane(entry.slot, x, Q, settings_.fold.roughness)) return;

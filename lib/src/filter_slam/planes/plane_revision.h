@@ -24,9 +24,9 @@ class PlaneRevision {
   int list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const;
   /// A point that lies elsewhere becomes a point of its own, where its ray has the height that its pixels say.
   void leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W);
-  /// Takes from the plane what the points that are off have bent it by, by the own places of all of its points. These are placed by the
-  /// poses of different times and may have drifted, and so may the plane: it becomes uncertain by the step, by how far it stays from the
-  /// majority's plane, and by the variances of that.
+  /// Moves the plane towards the majority's, and no farther than the points that are off can have bent it, by the own places of all of its
+  /// points. These are placed by the poses of different times and may have drifted, and so may the plane: it becomes uncertain by the step,
+  /// by how far it stays from the majority's plane, and by the variances of that.
   void straighten(int plane_entry, const MajorityPlane& to);
 
   const Settings& settings_;
