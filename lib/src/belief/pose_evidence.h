@@ -11,15 +11,14 @@ class Archive;
 
 /// What the searches of a frame have found, and how much of it agrees with one pose.
 struct PoseConsensus {
-  int searched = 0;          ///< features
-  int inliers = 0;           ///< of them: found where the pose has them
-  Scalar log_density = 0;    ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
-  Scalar log_chance = 0;     ///< sum of log_chance_density() over the inliers
-  Scalar log_zoom = 0;       ///< ln of the focal length over the calibrated one, by the inliers' pixels
-  Scalar lens_evidence = 0;  ///< lens_evidence() of the pixels; 0: they do not measure it
-  bool of_all_points =
-      false;  ///< every point in view was searched for, so that wrong places share some with the right one
-  bool is_elsewhere = false;  ///< the pose is not the predicted one: how much earlier frames found says nothing of it
+  int searched = 0;            ///< features
+  int inliers = 0;             ///< of them: found where the pose has them
+  Scalar log_density = 0;      ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
+  Scalar log_chance = 0;       ///< sum of log_chance_density() over the inliers
+  Scalar log_zoom = 0;         ///< ln of the focal length over the calibrated one, by the inliers' pixels
+  Scalar lens_evidence = 0;    ///< lens_evidence() of the pixels; 0: they do not measure it
+  bool of_all_points = false;  ///< all points in view were searched for: wrong places share some with the right one
+  bool is_elsewhere = false;   ///< the pose is not the predicted one: how much earlier frames found says nothing of it
 };
 
 /// ln of the density with which a search of this area finds something where its feature is not [ln px^-2].

@@ -117,6 +117,7 @@ bool KeyframeTracking::correct(const CameraPose& pose, const Mat6& information) 
     accept_marked();
     return true;
   }
+  for (int c = 0; c < frame_.report.matches; ++c) search_.match(c).status = MatchStatus::kOutlier;
   motion_.set_prediction(before.body(), before.covariance());
   return false;
 }
