@@ -109,7 +109,8 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
 
   float warped[kWarpSize * kWarpSize];
   if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
-    // The source patch is too small for this level: search at the finest one, as far as that reaches.
+    // The source patch is too small for this level: search at the finest one, as far as that reaches. At a coarser one a repeated texture
+    // is taken for its neighbour (lib/docs/lab/2026-11/matching.md).
     level = finest;
     if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
       outcome.comparable = false;
@@ -129,23 +130,23 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   const SearchResult found = pf::search(pyramid_.level[level], pattern, ellipse);
   if (found.score < kMinSearchScore || found.second > found.score - kMinPeakLead) return outcome;
 
+  // Down to the finest level that still shows the template: a smeared image shows it at coarse levels only.
   Vec2 position = found.position;
-  AlignResult aligned;
   for (;; --level) {
     AlignTemplate fine;
-    if (!make_align_template(warped, &fine)) return outcome;
-    aligned = align(pyramid_.level[level], fine, position);
+    if (!make_align_template(warped, &fine)) break;
+    const AlignResult aligned = align(pyramid_.level[level], fine, position);
     if (aligned.converged) position = aligned.position;
-    if (level == finest) break;
-    if (!warp_template(patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) return outcome;
+    if (aligned.converged && aligned.zncc >= kMinScore) {
+      outcome.found = true;
+      outcome.pixel = from_level(position, level);
+      outcome.level_scale = static_cast<Scalar>(1 << level);
+      outcome.noise = aligned.covariance() * (outcome.level_scale * outcome.level_scale);
+      outcome.score = aligned.zncc;
+    }
+    if (level == finest || !warp_template(patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) break;
     position = Vec2((position.x() + Scalar(0.25)) * Scalar(2), (position.y() + Scalar(0.25)) * Scalar(2));
   }
-  if (!aligned.converged || aligned.zncc < kMinScore) return outcome;
-  outcome.found = true;
-  outcome.pixel = from_level(position, finest);
-  outcome.level_scale = static_cast<Scalar>(1 << finest);
-  outcome.noise = aligned.covariance() * (outcome.level_scale * outcome.level_scale);
-  outcome.score = aligned.zncc;
   return outcome;
 }
 
