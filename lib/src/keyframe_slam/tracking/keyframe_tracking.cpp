@@ -55,15 +55,31 @@ int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Ma
                                     PoseConsensus* consensus) {
   const int listed = search_.list_placed(about);
   PosePrior moving = about;  // with the velocities that are known best
-  if (settings_.gate * search_.widest(listed) > kWideEllipse * kWideEllipse && listed > kScouts)
+  const bool is_wide = settings_.gate * search_.widest(listed) > kWideEllipse * kWideEllipse;
+  if (is_wide && listed > kScouts)
     found_ = search_by_scouts(about, pose, information, &moving);
   else
     found_ = search_.search(0, 0, listed, about, Scalar(1));
-  const int inliers = pose_.find(found_, moving, pose, information);
+  int inliers = pose_.find(found_, moving, pose, information);
+  if (is_wide && inliers > 0 && look_again(about, pose, information, &moving))
+    inliers = pose_.find(found_, moving, pose, information);
   *consensus = pose_.consensus(inliers, found_, about, *pose, *information);
   if (inliers > 0) pose_.weigh_lens(found_, *pose, consensus);
   frame_.note_consensus(inliers);
   return inliers;
+}
+
+/// The prior of searches after the first matches have given a pose, with the velocities that follow from it. False: it has no covariance.
+bool KeyframeTracking::narrow(const PosePrior& about, const CameraPose& pose, const Mat6& information,
+                              KeyframeMotion* after, PosePrior* out) const {
+  SmallCholesky<6> factored, prior;
+  if (has_rows(map_.camera()) && about.with_velocities != nullptr && follow_velocities(pose, information, after)) {
+    *out = {pose.q_WC, pose.p_WC, after->pose_covariance(), after->body().v_W, after->body().w_C, &after->covariance()};
+    return true;
+  }
+  if (!prior.factor(about.covariance) || !factored.factor(Mat6(information + prior.inverse()))) return false;
+  *out = {pose.q_WC, pose.p_WC, factored.inverse(), about.v_W, about.w_C};
+  return true;
 }
 
 /// Searches for a few points first: with their pose the others are searched for in small ellipses. moving gets the velocities that follow
@@ -75,21 +91,28 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
   int inliers = pose_.find(found, about, pose, information);
   if (!PoseBelief::is_enough(belief_.evidence(pose_.consensus(inliers, found, about, *pose, *information))))
     inliers = 0;
-  SmallCholesky<6> factored, prior;
   KeyframeMotion after = motion_;
-  if (inliers > 0 && has_rows(map_.camera()) && about.with_velocities != nullptr &&
-      follow_velocities(*pose, *information, &after)) {
-    scouted = {pose->q_WC,       pose->p_WC,       after.pose_covariance(),
-               after.body().v_W, after.body().w_C, &after.covariance()};
+  if (inliers > 0 && narrow(about, *pose, *information, &after, &scouted))
     search_.predict_again(kScouts, others, scouted);
-  } else if (inliers > 0 && prior.factor(about.covariance) && factored.factor(Mat6(*information + prior.inverse()))) {
-    scouted = {pose->q_WC, pose->p_WC, factored.inverse(), about.v_W, about.w_C};
-    search_.predict_again(kScouts, others, scouted);
-  }
   scouted.follows = about.follows;
   moving->v_W = scouted.v_W;
   moving->w_C = scouted.w_C;
   return search_.search(found, kScouts, others, scouted, Scalar(1));
+}
+
+/// In a wide ellipse a texture that repeats hides its point. So what does not agree with the pose that the others give is searched for once
+/// more, in the small ellipse about that pose. False where nothing more is found.
+bool KeyframeTracking::look_again(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving) {
+  PosePrior at = about;
+  KeyframeMotion after = motion_;
+  if (!narrow(about, *pose, *information, &after, &at)) return false;
+  const int kept = search_.forget_others(found_, pose_.inliers());
+  const int others = search_.placed() - kept;
+  search_.predict_again(kept, others, at);
+  moving->v_W = at.v_W;
+  moving->w_C = at.w_C;
+  found_ = search_.search(kept, kept, others, at, Scalar(1));
+  return true;
 }
 
 /// Pixels at the frame's time were found with the predicted velocities; after a jerk the pose is found once more, with the velocities that

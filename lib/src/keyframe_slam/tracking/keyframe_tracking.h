@@ -46,6 +46,9 @@ class KeyframeTracking {
 
  private:
   int search_by_scouts(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving);
+  bool look_again(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving);
+  bool narrow(const PosePrior& about, const CameraPose& pose, const Mat6& information, KeyframeMotion* after,
+              PosePrior* out) const;
   bool correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information);
   bool apply(const CameraPose& pose, const Mat6& information, PosePrior* now);
   int mark(const PosePrior& at);

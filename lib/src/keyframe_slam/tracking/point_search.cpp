@@ -124,14 +124,27 @@ bool PointSearch::find(int c, const PosePrior& at, Scalar depth) {
   if (at.follows && !aim(match.feature, &task)) return false;
   const SearchOutcome outcome = images_.search(task);
   if (!outcome.comparable) return false;
+  if (!match.searched) ++frame_.report.attempts;
   match.searched = true;
-  ++frame_.report.attempts;
   if (!outcome.found || squared_distance(outcome.pixel - match.predicted, match.innovation) > settings_.gate)
     return false;
   match.measured = outcome.pixel;
   point_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
   point_[c].searched = ellipse_area(task.innovation, settings_.gate);
   return true;
+}
+
+int PointSearch::forget_others(int found, const unsigned char* is_kept) {
+  int kept = 0;
+  for (int c = 0; c < found; ++c) {
+    if (is_kept[c] != 0) {
+      std::swap(point_[kept++], point_[c]);
+      continue;
+    }
+    match(c).status = MatchStatus::kMissed;
+    --frame_.report.matches;
+  }
+  return kept;
 }
 
 int PointSearch::search(int found, int first, int count, const PosePrior& at, Scalar depth) {

@@ -40,6 +40,9 @@ class PointSearch {
   int placed() const { return placed_; }
   /// Predicts points with a depth again, from a better pose.
   void predict_again(int first, int count, const PosePrior& at);
+  /// Of the first `found` points, which were found, keeps those of is_kept at the front, in their order; the others count as missed. Returns
+  /// how many are kept.
+  int forget_others(int found, const unsigned char* is_kept);
   /// Searches for a range of the list, and moves points that are found behind the first `found` ones, which were found before. Returns how
   /// many have been found in all.
   int search(int found, int first, int count, const PosePrior& at, Scalar depth);

@@ -34,6 +34,7 @@ class PoseMeasurement {
   void weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const;
 
   bool is_inlier(int c) const { return pose_.is_inlier(c); }
+  const unsigned char* inliers() const { return pose_.inliers(); }
   /// Bound within which a match supports a pose [px].
   Scalar bound_px() const;
 
