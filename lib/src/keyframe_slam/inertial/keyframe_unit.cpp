@@ -112,6 +112,8 @@ bool KeyframeUnit::predict(std::int64_t before_ns, bool follows, bool coasting_o
   if (!has_begun()) return false;
   const std::int64_t t_ns = frame_.report.t_ns;
   data_.follows = follows;
+  data_.is_again = false;
+  data_.has_other = follows;
   parts_->ruler.move_about(data_.left, motion_.view());
   parts_->watch.begin_frame(before_ns, t_ns);
   if (parts_->watch.take_alignment()) {
@@ -168,20 +170,14 @@ bool KeyframeUnit::update(Scalar max_nis) {
   return true;
 }
 
-bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
+bool KeyframeUnit::take_pose(const MapOfUnit& map) {
   if (parts_ == nullptr) return false;
   if (!data_.has_begun) {
     if (map.is_tracked && !map.is_pending) begin(map);
     return false;
   }
   const bool has_pose = map.is_tracked && motion_.measured().is_set;
-  if (again) {
-    if (has_pose) update(0);
-    parts_->watch.settle(map.is_tracked);
-    if (!map.is_tracked) put_prediction();
-    data_.left = motion_.view();
-    return false;
-  }
+  if (data_.is_again) return take_pose_again(map.is_tracked, has_pose);
   const Scalar of_samples = parts_->watch.begin_measuring(data_.follows);
   bool fits = !has_pose || update(data_.follows ? of_samples : tuning::unit_watch::kMaxPoseNis);
   if (!fits && !data_.follows) {  // found again somewhere else: the map is, and how the body moves says nothing of it
@@ -189,7 +185,8 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
     parts_->ruler.move_about({predicted.q_WC, predicted.p_W}, motion_.view());
     fits = true;
   }
-  if (!parts_->watch.is_refused(!fits)) {
+  const bool is_open = has_other_prediction() && frame_.report.inliers == 0;
+  if (!parts_->watch.is_refused(!fits) && !is_open) {
     data_.left = motion_.view();
     return false;
   }
@@ -201,12 +198,24 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
   }
   if (!has_pose) {
     put_prediction();
+    data_.is_again = true;
     return true;
   }
   update(0);
   parts_->watch.settle(true);
   data_.left = motion_.view();
   return false;
+}
+
+/// After another prediction than the frame's first one.
+bool KeyframeUnit::take_pose_again(bool is_tracked, bool has_pose) {
+  if (has_pose) update(0);
+  parts_->watch.settle(is_tracked);
+  if (!is_tracked) put_prediction();
+  data_.left = motion_.view();
+  const bool again = !is_tracked && has_other_prediction();
+  data_.has_other = false;
+  return again;
 }
 
 MovingPoints KeyframeUnit::moving_points() const {

@@ -6,6 +6,8 @@
 #include "frame/ellipse.h"
 #include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
+#include "inertial/tuning.h"
 #include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/tracking/body_correction.h"
@@ -16,18 +18,19 @@ namespace pf {
 
 using namespace tuning::keyframe_tracking;
 
-void KeyframeTracking::measure(Scalar median_depth) {
+void KeyframeTracking::measure(Scalar median_depth, bool has_other) {
   PosePrior prior = prior_of(motion_);
   CameraPose pose = {prior.q_WC, prior.p_W};
   Mat6 information = Mat6::Zero();
   hypotheses_.begin();
-  if (!measure_placed(prior, &pose, &information)) {
+  if (!measure_placed(prior, has_other, &pose, &information)) {
+    if (has_other) return;
     measure_all(prior, median_depth);
     if (frame_.report.inliers > 0 || !search_.find_followed()) return;
     frame_.forget_searches();
     hypotheses_.add();
     prior.follows = true;
-    if (!measure_placed(prior, &pose, &information)) return measure_all(prior, median_depth);
+    if (!measure_placed(prior, has_other, &pose, &information)) return measure_all(prior, median_depth);
   }
   const bool corrected =
       has_rows(map_.camera()) ? correct_by_rows(prior, pose, information) : correct(pose, information);
@@ -35,9 +38,24 @@ void KeyframeTracking::measure(Scalar median_depth) {
 }
 
 /// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose.
-bool KeyframeTracking::measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information) {
+bool KeyframeTracking::measure_placed(const PosePrior& prior, bool has_other, CameraPose* pose, Mat6* information) {
   PoseConsensus consensus;
-  return measure_about(prior, pose, information, &consensus) > 0 && is_believed(consensus);
+  if (measure_about(prior, pose, information, &consensus) == 0) return false;
+  return !(has_other && contradicts(*pose, *information)) && is_believed(consensus);
+}
+
+/// A prediction that is as far from the pose as hardly ever by chance: it has pulled the pose, and left out points.
+bool KeyframeTracking::contradicts(const CameraPose& pose, const Mat6& information) const {
+  KeyframeMotion after = motion_;
+  PosePrior now;
+  if (!correct_body(pose, information, &after, &now) || !after.measured().is_set) return false;
+  const KeyframeMotion::MeasuredPose& measured = after.measured();
+  const Body& predicted = motion_.body();
+  Vec6 e;
+  e << log_so3(measured.q_WC * predicted.q_WC.conjugate()), measured.p_W - predicted.p_W;
+  SmallCholesky<6> S;
+  return S.factor(Mat6(motion_.pose_covariance() + noise_.correlation_frames() * measured.R)) &&
+         e.dot(S.solve<1>(e)) > tuning::unit_watch::kMaxPoseNis;
 }
 
 /// Weighs what was found about the prediction.

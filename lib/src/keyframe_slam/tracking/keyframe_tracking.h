@@ -26,8 +26,9 @@ class KeyframeTracking {
         hypotheses_(settings, belief) {}
 
   /// Finds points with a depth about the predicted pose, and updates the body with the pose fitted to them; then finds those without a
-  /// depth. Where those with a depth give no pose, it is fitted to all.
-  void measure(Scalar median_depth);
+  /// depth. Where those with a depth give no pose, it is fitted to all, or has_other: nothing, since the frame is measured again from another
+  /// prediction. Points without a depth follow any translation, and are no evidence between the two.
+  void measure(Scalar median_depth, bool has_other);
   /// While few points have a depth: finds all points about the predicted pose, and updates the body with the pose fitted to all. A point
   /// without a depth constrains the pose but for a translation along its epipolar line.
   void measure_young(Scalar median_depth);
@@ -51,7 +52,8 @@ class KeyframeTracking {
   int mark(const PosePrior& at);
   void accept_marked();
   void accept(const Vec2& pixel, Match* match);
-  bool measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information);
+  bool measure_placed(const PosePrior& prior, bool has_other, CameraPose* pose, Mat6* information);
+  bool contradicts(const CameraPose& pose, const Mat6& information) const;
   void measure_all(const PosePrior& prior, Scalar median_depth);
   void fit_all(int found, const PosePrior& prior, Scalar median_depth);
   bool is_believed(const PoseConsensus& consensus);
