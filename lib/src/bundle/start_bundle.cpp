@@ -24,6 +24,21 @@ int num_left(const StartRecord& record) {
   return left;
 }
 
+/// Pixels at their frames' times by another readout, from that of the camera. depth_rho: 0 where there is none. Frame 0 has rays.
+void move_readout(const Camera& camera, Scalar readout, const Scalar* depth_rho, StartRecord& record) {
+  for (int k = 0; k < record.frames(); ++k) {
+    const StartRecord::Frame& frame = record.frame(k);
+    const Mat3 R_CW = frame.q_WC.toRotationMatrix().transpose();
+    const ViewOfRows view = {R_CW, record.rates(k), camera.readout};
+    for (int i = 0; i < record.features(); ++i) {
+      if (!record.seen(k, i) || !(depth_rho[i] > Scalar(0))) continue;
+      const Scalar far = (record.ray(i) / depth_rho[i] - frame.p_W).norm();
+      const Vec2 pixel = record.pixel(k, i);
+      record.add_pixel(k, i, pixel - (readout - camera.readout) * readout_column(camera, view, pixel, 1 / far));
+    }
+  }
+}
+
 }  // namespace
 
 bool StartBundle::layout(Arena& arena, int lens_rows) {
@@ -125,9 +140,7 @@ bool StartBundle::find_readout(StartRecord& record, Scalar sigma_px, Scalar medi
   adjust(lens_->camera, record, spread.frame, spread.count, kRounds, sigma_px, &lens, &variance);
   const Scalar found = lens_->camera.readout;
   bool is_good[StartRecord::kMaxFeatures] = {};
-  lens_->camera = before;
-  move_readout(found, record);
-  lens_->camera.readout = found;
+  move_readout(before, found, last_rho_, record);
   bool solved = variance > Scalar(0) && list_good(lens_->camera, record, spread, sigma_px, is_good) >= kMinFeatures;
   const Scalar unit = solved ? unit_of_length(is_good, count, median_depth) : 1 / median_depth;
   solved = solved && place_frames(lens_->camera, record, spread, sigma_px, unit);
@@ -136,26 +149,10 @@ bool StartBundle::find_readout(StartRecord& record, Scalar sigma_px, Scalar medi
     for (int i = 0; i < count; ++i) last_rho_[i] = is_good[i] ? rho_[i] : Scalar(0);
     lens_->readout_variance = kLensInflation * variance;
   } else {
-    move_readout(before.readout, record);
+    move_readout(lens_->camera, before.readout, last_rho_, record);
     set_lens(before, record);
   }
   return solved;
-}
-
-/// Pixels at their frames' times by another readout, from that of the lens. The rays of frame 0 are the adjustment's.
-void StartBundle::move_readout(Scalar readout, StartRecord& record) const {
-  for (int k = 0; k < record.frames(); ++k) {
-    const StartRecord::Frame& frame = record.frame(k);
-    const Mat3 R_CW = frame.q_WC.toRotationMatrix().transpose();
-    const ViewOfRows view = {R_CW, record.rates(k), lens_->camera.readout};
-    for (int i = 0; i < record.features(); ++i) {
-      if (!record.seen(k, i) || !(last_rho_[i] > Scalar(0))) continue;
-      const Scalar far = (record.ray(i) / last_rho_[i] - frame.p_W).norm();
-      const Vec2 pixel = record.pixel(k, i);
-      record.add_pixel(k, i,
-                       pixel - (readout - lens_->camera.readout) * readout_column(lens_->camera, view, pixel, 1 / far));
-    }
-  }
 }
 
 /// camera: where the lens is adjusted, that which is.

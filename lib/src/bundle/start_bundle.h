@@ -92,7 +92,6 @@ class StartBundle {
   Scalar adjust_with_lens(StartRecord& record, const int* frame, int cameras, Scalar sigma_px);
   bool adjusts_shape() const { return is_free_ && lens_->rows.shape_count() > 0; }
   bool find_readout(StartRecord& record, Scalar sigma_px, Scalar median_depth);
-  void move_readout(Scalar readout, StartRecord& record) const;
   void set_lens(const Camera& camera, StartRecord& record);
   bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose);
 

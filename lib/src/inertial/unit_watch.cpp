@@ -17,6 +17,12 @@ namespace {
 
 constexpr double kRateChange = 4;  ///< sample intervals, of which the angular acceleration is taken
 
+Mat6 pose_covariance(const Filter& filter) {
+  Scalar P[6 * 6];
+  filter.body_covariance(6, P);
+  return Eigen::Map<const Eigen::Matrix<Scalar, 6, 6, Eigen::RowMajor>>(P);
+}
+
 }  // namespace
 
 void UnitWatch::layout(Arena& arena) {
@@ -85,7 +91,8 @@ bool UnitWatch::is_refused(bool is_contradicted) {
   if (parts_ == nullptr || !parts_->data.follows) return false;
   const FrameReport& report = frame_.report;
   const bool nothing_used = report.inliers == 0;
-  parts_->data.is_contradicted = is_contradicted || (nothing_used && report.matches >= settings_.min_inliers);
+  const bool disagree = report.matches >= settings_.min_inliers && report.consensus < settings_.min_inliers;
+  parts_->data.is_contradicted = is_contradicted || (nothing_used && disagree);
   return parts_->data.is_contradicted || (nothing_used && report.attempts >= settings_.min_inliers);
 }
 
@@ -95,13 +102,7 @@ void UnitWatch::leave_prediction() {
   data.by_samples = filter_.state().body;
   predict_again(false);
   data.by_none = filter_.state().body;
-  data.P_by_none = pose_covariance();
-}
-
-Mat6 UnitWatch::pose_covariance() const {
-  Scalar P[6 * 6];
-  filter_.body_covariance(6, P);
-  return Eigen::Map<const Eigen::Matrix<Scalar, 6, 6, Eigen::RowMajor>>(P);
+  data.P_by_none = pose_covariance(filter_);
 }
 
 /// Of the two errors e = pose - prediction, with the covariance of the correction from the prediction without samples:
@@ -113,7 +114,7 @@ bool UnitWatch::is_worse_than_none() const {
   const Data& data = parts_->data;
   const Body& body = filter_.state().body;
   SmallCholesky<6> S;
-  if (!S.factor(Mat6(data.P_by_none - pose_covariance()))) return false;
+  if (!S.factor(Mat6(data.P_by_none - pose_covariance(filter_)))) return false;
   const auto nis = [&](const Body& predicted) {
     Vec6 e;
     e << log_so3(body.q_WC * predicted.q_WC.conjugate()), body.p_W - predicted.p_W;

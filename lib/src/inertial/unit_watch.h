@@ -86,7 +86,6 @@ class UnitWatch {
 
   bool is_silent(std::int64_t t_ns) const;
   void predict_again(bool by_samples);
-  Mat6 pose_covariance() const;
   bool is_worse_than_none() const;
   void note_rate();
   void leave_samples(std::int64_t before_ns);

@@ -141,7 +141,7 @@ void KeyframeSlam::measure() {
     data_.young = num_placed(map_) < tuning::keyframe_tracking::kYoung;
   } else {
     relocaliser_.clear_proposal();
-    measuring_.measure(data_.median_depth, unit_.has_other_prediction());
+    measuring_.measure(data_.median_depth);
   }
   if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report)) {
     const CameraView before = motion_.view();

@@ -140,7 +140,7 @@ void KeyframeUnit::put_prediction() {
   KeyframeMotion::Covariance P = filter.covariance_of<12>(rows);
   const Scalar of_gyro = noise().gyro_density;  // of one sample
   P.bottomRightCorner<3, 3>().diagonal().array() += of_gyro * of_gyro * static_cast<Scalar>(imu_.rate_hz());
-  motion_.set_prediction(parts_->ruler.body(), P);
+  motion_.set_prediction(parts_->ruler.body(), P, data_.has_other ? tuning::unit_watch::kMaxPoseNis : Scalar(0));
   data_.left = motion_.view();
 }
 
@@ -177,7 +177,15 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map) {
     return false;
   }
   const bool has_pose = map.is_tracked && motion_.measured().is_set;
-  if (data_.is_again) return take_pose_again(map.is_tracked, has_pose);
+  if (data_.is_again) {
+    if (has_pose) update(0);
+    parts_->watch.settle(map.is_tracked);
+    const bool again = !map.is_tracked && data_.has_other;
+    data_.has_other = false;
+    if (!map.is_tracked) put_prediction();
+    data_.left = motion_.view();
+    return again;
+  }
   const Scalar of_samples = parts_->watch.begin_measuring(data_.follows);
   bool fits = !has_pose || update(data_.follows ? of_samples : tuning::unit_watch::kMaxPoseNis);
   if (!fits && !data_.follows) {  // found again somewhere else: the map is, and how the body moves says nothing of it
@@ -185,7 +193,7 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map) {
     parts_->ruler.move_about({predicted.q_WC, predicted.p_W}, motion_.view());
     fits = true;
   }
-  const bool is_open = has_other_prediction() && frame_.report.inliers == 0;
+  const bool is_open = data_.has_other && frame_.report.inliers == 0;
   if (!parts_->watch.is_refused(!fits) && !is_open) {
     data_.left = motion_.view();
     return false;
@@ -205,17 +213,6 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map) {
   parts_->watch.settle(true);
   data_.left = motion_.view();
   return false;
-}
-
-/// After another prediction than the frame's first one.
-bool KeyframeUnit::take_pose_again(bool is_tracked, bool has_pose) {
-  if (has_pose) update(0);
-  parts_->watch.settle(is_tracked);
-  if (!is_tracked) put_prediction();
-  data_.left = motion_.view();
-  const bool again = !is_tracked && has_other_prediction();
-  data_.has_other = false;
-  return again;
 }
 
 MovingPoints KeyframeUnit::moving_points() const {

@@ -43,8 +43,6 @@ class KeyframeUnit {
 
   /// True where samples, or their filter, have predicted the body to this frame. follows: the frame before was tracked.
   bool predict(std::int64_t before_ns, bool follows, bool coasting_or_lost, bool nothing_measured, Scalar median_depth);
-  /// True where the frame can be measured again from another prediction, if this one finds no pose.
-  bool has_other_prediction() const { return has_begun() && data_.has_other; }
   /// Takes the pose that the frame has measured. True where the frame is to be measured again from another prediction, which the body has
   /// then: first without samples, if hardly anything was found about the one by samples, then by samples once more, if nothing was found
   /// at all, and is measured by all that can be found.
@@ -114,7 +112,6 @@ class KeyframeUnit {
   void advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured);
   void put_prediction();
   bool update(Scalar max_nis);
-  bool take_pose_again(bool is_tracked, bool has_pose);
   MovingPoints moving_points() const;
 
   const Settings& settings_;

@@ -1,13 +1,13 @@
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/elapsed.h"
 #include "frame/ellipse.h"
 #include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "inertial/tuning.h"
 #include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/tracking/body_correction.h"
@@ -18,30 +18,42 @@ namespace pf {
 
 using namespace tuning::keyframe_tracking;
 
-void KeyframeTracking::measure(Scalar median_depth, bool has_other) {
+void KeyframeTracking::measure(Scalar median_depth) {
   PosePrior prior = prior_of(motion_);
   CameraPose pose = {prior.q_WC, prior.p_W};
   Mat6 information = Mat6::Zero();
   hypotheses_.begin();
-  if (!measure_placed(prior, has_other, &pose, &information)) {
-    if (has_other) return;
+  if (!measure_placed(prior, &pose, &information)) {
+    if (motion_.max_nis() > Scalar(0)) return;
     measure_all(prior, median_depth);
     if (frame_.report.inliers > 0 || !search_.find_followed()) return;
     frame_.forget_searches();
     hypotheses_.add();
     prior.follows = true;
-    if (!measure_placed(prior, has_other, &pose, &information)) return measure_all(prior, median_depth);
+    if (!measure_placed(prior, &pose, &information)) return measure_all(prior, median_depth);
   }
   const bool corrected =
       has_rows(map_.camera()) ? correct_by_rows(prior, pose, information) : correct(pose, information);
   if (corrected) measure_unplaced(median_depth);
 }
 
-/// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose.
-bool KeyframeTracking::measure_placed(const PosePrior& prior, bool has_other, CameraPose* pose, Mat6* information) {
+/// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose, or another prediction
+/// is to be tried.
+bool KeyframeTracking::measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information) {
   PoseConsensus consensus;
+  const bool has_other = motion_.max_nis() > Scalar(0), is_second = first_.t_ns == frame_.report.t_ns;
+  if (!is_second) first_ = {frame_.report.t_ns, std::numeric_limits<Scalar>::lowest()};
   if (measure_about(prior, pose, information, &consensus) == 0) return false;
-  return !(has_other && contradicts(*pose, *information)) && is_believed(consensus);
+  if (has_other) {
+    const Scalar evidence = belief_.evidence(consensus);
+    const bool are_few = belief_.share().is_unlikely(consensus.searched, consensus.inliers);
+    if (is_second && are_few && !(evidence > first_.evidence)) return false;
+    if (!is_second && (are_few || contradicts(*pose, *information))) {
+      first_.evidence = evidence;
+      return false;
+    }
+  }
+  return is_believed(consensus);
 }
 
 /// A prediction that is as far from the pose as hardly ever by chance: it has pulled the pose, and left out points.
@@ -55,7 +67,7 @@ bool KeyframeTracking::contradicts(const CameraPose& pose, const Mat6& informati
   e << log_so3(measured.q_WC * predicted.q_WC.conjugate()), measured.p_W - predicted.p_W;
   SmallCholesky<6> S;
   return S.factor(Mat6(motion_.pose_covariance() + noise_.correlation_frames() * measured.R)) &&
-         e.dot(S.solve<1>(e)) > tuning::unit_watch::kMaxPoseNis;
+         e.dot(S.solve<1>(e)) > motion_.max_nis();
 }
 
 /// Weighs what was found about the prediction.
