@@ -96,6 +96,22 @@ void test_misses_should_say_less_once_frames_have_missed_much() {
                             static_cast<double>(pose_evidence(none, sharp, AlikeShare())));
 }
 
+void test_few_of_many_should_be_unlikely_where_frames_have_found_most() {
+  FindShare sharp, smeared;
+  sharp.init();
+  smeared.init();
+  for (int frame = 0; frame < 20; ++frame) {
+    sharp.learn(45, 42);
+    smeared.learn(45, 10);
+  }
+  for (FindShare* share : {&sharp, &smeared})
+    share->begin_frame(Scalar(0.5));  // whether this image is as sharp as those or not
+  TEST_ASSERT_TRUE(sharp.is_unlikely(45, 8));
+  TEST_ASSERT_FALSE(sharp.is_unlikely(45, 40));
+  TEST_ASSERT_FALSE(sharp.is_unlikely(45, 45));
+  TEST_ASSERT_FALSE(smeared.is_unlikely(45, 8));
+}
+
 /// In ellipses so wide that chance explains nothing of what agrees: what is left is a place that looks like the right one in a few points.
 void test_few_of_many_should_be_another_place_however_well_they_agree() {
   SeededRandom random(302);
@@ -202,6 +218,7 @@ int main() {
   RUN_TEST(test_probability_of_all_shares_should_sum_to_one);
   RUN_TEST(test_right_matches_should_speak_for_a_pose_and_chance_against_it);
   RUN_TEST(test_misses_should_say_less_once_frames_have_missed_much);
+  RUN_TEST(test_few_of_many_should_be_unlikely_where_frames_have_found_most);
   RUN_TEST(test_few_of_many_should_be_another_place_however_well_they_agree);
   RUN_TEST(test_alike_views_should_take_from_what_agrees);
   RUN_TEST(test_a_common_part_should_speak_against_a_pose_in_sharp_images_only);

@@ -192,7 +192,7 @@ double solve_through_another_lens(const Camera& lens, const Camera& calibration,
   if (prior != nullptr) {
     TEST_ASSERT_TRUE(start.bundle.layout(*start.arena, prior->rows.count));
     start.bundle.init();
-    start.bundle.free_lens(calibration, *prior);
+    start.bundle.free_lens(calibration, *prior, calibration);
   }
   for (int i = 0; i < start.record.features(); ++i) {
     Vec2 z;
@@ -238,6 +238,90 @@ void test_wrong_lens_should_be_found_with_the_depths_when_it_is_uncertain() {
   EXPECT_BELOW(0.05, std::fabs(static_cast<double>(adjusted.distortion[0] - lens.distortion[0])));
 }
 
+/// A hand's path, t [s] after frame 0.
+Body shaken(double t) {
+  Body body;
+  body.p_W = Vec3(static_cast<Scalar>(0.15 * std::sin(3 * t)), static_cast<Scalar>(0.08 * std::sin(5 * t)),
+                  static_cast<Scalar>(0.03 * std::sin(4 * t)));
+  body.q_WC = exp_so3(Vec3(static_cast<Scalar>(0.06 * std::sin(6 * t)), static_cast<Scalar>(0.04 * std::sin(5 * t)),
+                           static_cast<Scalar>(0.05 * std::sin(4 * t))));
+  return body;
+}
+
+Body relative_to_first_frame(double t) {
+  Body body = shaken(t);
+  const Body first = shaken(0);
+  body.q_WC = first.q_WC.conjugate() * body.q_WC;
+  body.p_W = first.q_WC.conjugate() * (body.p_W - first.p_W);
+  return body;
+}
+
+/// Where a point is seen by rows that are read out one after the other, the middle one at t.
+Vec2 by_rows(const Camera& camera, Scalar readout, double t, const Vec3& p) {
+  Vec2 z(0, static_cast<Scalar>(camera.height) / 2);
+  for (int round = 0; round < 4; ++round) {
+    const double part = (static_cast<double>(z.y()) + 0.5) / camera.height - 0.5;
+    const Body body = relative_to_first_frame(t + static_cast<double>(readout) * part);
+    TEST_ASSERT_TRUE(project(camera, body.q_WC.conjugate() * (p - body.p_W), &z));
+  }
+  return z;
+}
+
+/// Root mean square of the relative errors of depths up to scale, of a record whose rows were read out over 20 ms. prior: of the readout,
+/// from 0; null: rows are taken to be read out at once.
+double solve_rows(const LensPrior* prior, Scalar* readout) {
+  SeededRandom random(121);
+  const Camera camera = pinhole_camera();
+  Start start(random, camera, 48, 0);
+  if (prior != nullptr) {
+    TEST_ASSERT_TRUE(start.bundle.layout(*start.arena, prior->rows.count));
+    start.bundle.init();
+    start.bundle.free_lens(camera, *prior, camera);
+  }
+  for (int i = 0; i < start.record.features(); ++i) {
+    Vec3 ray;
+    TEST_ASSERT_TRUE(
+        unproject(camera, by_rows(camera, Scalar(0.02), 0, start.points[static_cast<std::size_t>(i)]), &ray));
+    start.record.set_ray(i, ray);
+  }
+  StartOutcome outcome = StartOutcome::kWait;
+  for (int k = 1; k <= 25; ++k) {
+    const double t = 0.033 * k;
+    const int frame =
+        start.record.add_frame(static_cast<std::int64_t>(k) * 33000000, relative_to_first_frame(t).q_WC, Vec3::Zero());
+    for (int i = 0; i < start.record.features(); ++i)
+      start.record.add_pixel(frame, i,
+                             by_rows(camera, Scalar(0.02), t, start.points[static_cast<std::size_t>(i)]) +
+                                 random.normals<2>(static_cast<double>(kSigma)));
+    if (k == 25) outcome = start.solve();
+  }
+  TEST_ASSERT_TRUE(outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled);
+  if (prior != nullptr) *readout = start.bundle.lens()->readout;
+  std::vector<double> ratio;
+  for (int i = 0; i < 48; ++i)
+    if (start.bundle.good(i))
+      ratio.push_back(static_cast<double>(start.points[static_cast<std::size_t>(i)].norm() * start.bundle.rho(i)));
+  TEST_ASSERT_GREATER_THAN_size_t(24, ratio.size());
+  std::sort(ratio.begin(), ratio.end());
+  double square = 0;
+  for (const double r : ratio) square += std::pow(r / ratio[ratio.size() / 2] - 1, 2);
+  return std::sqrt(square / static_cast<double>(ratio.size()));
+}
+
+void test_readout_should_be_found_with_the_depths_when_nothing_tells_it() {
+  Camera camera = pinhole_camera();
+  LensSigmas sigmas;
+  sigmas.readout = Scalar(0.015);
+  const LensPrior prior = readout_prior(make_lens_prior(sigmas, &camera));
+  TEST_ASSERT_EQUAL_INT(1, prior.rows.count);
+  Scalar readout = 0;
+  const double at_once = solve_rows(nullptr, nullptr), by_rows_found = solve_rows(&prior, &readout);
+  std::printf("depths rms %.4f with rows at once, %.4f with a readout of %.2f ms found\n", at_once, by_rows_found,
+              1e3 * static_cast<double>(readout));
+  EXPECT_BELOW(0.6 * at_once, by_rows_found);
+  EXPECT_BELOW(0.004, std::fabs(static_cast<double>(readout) - 0.02));
+}
+
 void test_lens_should_be_left_alone_when_a_start_waits() {
   SeededRandom random(120);
   Camera calibration = radtan_camera();
@@ -247,7 +331,7 @@ void test_lens_should_be_left_alone_when_a_start_waits() {
   Start start(random, calibration, 48);
   TEST_ASSERT_TRUE(start.bundle.layout(*start.arena, prior.rows.count));
   start.bundle.init();
-  start.bundle.free_lens(calibration, prior);
+  start.bundle.free_lens(calibration, prior, calibration);
   drift(random, start, Scalar(1.5));
   const Vec3 ray = start.record.ray(7);
   TEST_ASSERT_SAME(StartOutcome::kWait, start.solve());
@@ -285,6 +369,7 @@ int main(void) {
   RUN_TEST(test_start_should_wait_when_the_camera_rests);
   RUN_TEST(test_start_should_begin_again_when_too_few_of_the_first_features_are_left);
   RUN_TEST(test_wrong_lens_should_be_found_with_the_depths_when_it_is_uncertain);
+  RUN_TEST(test_readout_should_be_found_with_the_depths_when_nothing_tells_it);
   RUN_TEST(test_lens_should_be_left_alone_when_a_start_waits);
   RUN_TEST(test_features_should_not_be_called_good_when_they_drift);
   RUN_TEST(test_start_should_wait_when_the_pixels_have_no_common_explanation);

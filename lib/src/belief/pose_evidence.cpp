@@ -40,12 +40,21 @@ void FindShare::learn(int searched, int inliers) {
   mean_ = std::clamp(mean_ + kGain * (share - mean_), kLeast, kGreatest);
 }
 
-Scalar FindShare::log_probability(int searched, int inliers) const {
+Scalar FindShare::log_usual(int searched, int inliers) const {
   const Scalar a = tuning::find_share::kWeight * mean_, b = tuning::find_share::kWeight - a;
-  const Scalar usual = log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
+  return log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
+}
+
+Scalar FindShare::log_probability(int searched, int inliers) const {
+  const Scalar usual = log_usual(searched, inliers);
   if (as_sharp_ >= Scalar(1)) return usual;
   const Scalar any = log_any_share(searched, inliers);
   return any + std::log(1 - as_sharp_ + as_sharp_ * std::exp(usual - any));
+}
+
+bool FindShare::is_unlikely(int searched, int inliers) const {
+  return static_cast<Scalar>(inliers) < mean_ * static_cast<Scalar>(searched) &&
+         log_usual(searched, inliers) < log_any_share(searched, inliers);
 }
 
 Scalar FindShare::in_frame(int searched, int inliers) const {

@@ -43,12 +43,17 @@ class FindShare {
   ///
   ///   ln(p B(a + k, b + n - k) / B(a, b) + (1 - p) B(k + 1, n - k + 1)),   a = kWeight m,  b = kWeight (1 - m)
   Scalar log_probability(int searched, int inliers) const;
+  /// True where so few are found that any share is more likely than that of earlier frames: this image is less sharp, or the pose about
+  /// which they were searched for is wrong, and those found are a part that agrees by chance.
+  bool is_unlikely(int searched, int inliers) const;
   /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
   Scalar in_frame(int searched, int inliers) const;
 
   void carry(Archive& archive);  ///< base/archive.h
 
  private:
+  Scalar log_usual(int searched, int inliers) const;
+
   Scalar mean_ = 0, as_sharp_ = 1;
 };
 

@@ -6,6 +6,7 @@
 namespace pf {
 
 void StartRecord::carry(Archive& archive) {
+  archive.any(begin_ns_);
   archive.within(frames_, 0, kMaxFrames);
   archive.within(features_, 0, kMaxFeatures);
   for (int i = 0; i < features_; ++i) archive.numbers(ray_[i]);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bundle/rotation_fit.h"
+#include "bundle/row_column.h"
 #include "bundle/tuning.h"
 #include "geometry/pnp.h"
 #include "geometry/small_cholesky.h"
@@ -21,6 +22,21 @@ int num_left(const StartRecord& record) {
   int left = 0;
   for (int i = 0; i < record.features(); ++i) left += record.seen(record.frames() - 1, i) ? 1 : 0;
   return left;
+}
+
+/// Pixels at their frames' times by another readout, from that of the camera. depth_rho: 0 where there is none. Frame 0 has rays.
+void move_readout(const Camera& camera, Scalar readout, const Scalar* depth_rho, StartRecord& record) {
+  for (int k = 0; k < record.frames(); ++k) {
+    const StartRecord::Frame& frame = record.frame(k);
+    const Mat3 R_CW = frame.q_WC.toRotationMatrix().transpose();
+    const ViewOfRows view = {R_CW, record.rates(k), camera.readout};
+    for (int i = 0; i < record.features(); ++i) {
+      if (!record.seen(k, i) || !(depth_rho[i] > Scalar(0))) continue;
+      const Scalar far = (record.ray(i) / depth_rho[i] - frame.p_W).norm();
+      const Vec2 pixel = record.pixel(k, i);
+      record.add_pixel(k, i, pixel - (readout - camera.readout) * readout_column(camera, view, pixel, 1 / far));
+    }
+  }
 }
 
 }  // namespace
@@ -41,11 +57,13 @@ void StartBundle::init() {
   is_free_ = false;
 }
 
-void StartBundle::free_lens(const Camera& calibration, const LensPrior& prior) {
+void StartBundle::free_lens(const Camera& calibration, const LensPrior& prior, const Camera& now) {
   if (lens_ == nullptr) return;
   is_free_ = true;
   lens_->rows = prior.rows;
-  lens_->prior = lens_->camera = calibration;
+  lens_->prior = calibration;
+  lens_->camera = now;
+  lens_->readout_variance = prior.rows.has_readout() ? prior.variance[prior.rows.count - 1] : Scalar(0);
   lens_information(prior, kLensInflation, lens_->information);
 }
 
@@ -64,7 +82,7 @@ Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record
 
 /// Adjusts the poses of `frame` (pose_[1] and on) and all rho; returns the robust cost.
 Scalar StartBundle::adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
-                           Scalar sigma_px, const BundleLens* lens) {
+                           Scalar sigma_px, const BundleLens* lens, Scalar* lens_covariance) {
   pose_[0] = {Quat::Identity(), Vec3::Zero(), false, nullptr};
   for (int c = 0; c < cameras; ++c) {
     pose_[1 + c].free = true;
@@ -73,7 +91,10 @@ Scalar StartBundle::adjust(const Camera& camera, const StartRecord& record, cons
   const AdjustOptions options = {sigma_px, kHuber, Scalar(1), kPriorSigma, kBehindWeight, kNoPixelPenalty, rounds};
   Bundle bundle = {pose_, 1 + cameras, record.rays(), nullptr, rho_, record.features()};
   bundle.lens = lens;
-  return adjuster_.adjust(camera, options, bundle);
+  const Scalar cost = adjuster_.adjust(camera, options, bundle);
+  if (lens_covariance != nullptr && adjuster_.begin_covariances(camera, options, bundle))
+    adjuster_.lens_covariance(lens_covariance);
+  return cost;
 }
 
 /// The same for all cameras, with the lens. The effect of a wrong lens on the depths would otherwise be left to the filter, which cannot
@@ -90,8 +111,48 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   for (int i = 0; i < record.features(); ++i)
     lens_->pixel[i].given = project(before, record.ray(i), &lens_->pixel[i].pixel);
   const StartOutcome outcome = solve_by(lens_->camera, record, sigma_px, median_depth);
+  if (!adjusts_shape()) {
+    const bool solved = outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled;
+    return solved && !find_readout(record, sigma_px, median_depth) ? StartOutcome::kWait : outcome;
+  }
   if (outcome != StartOutcome::kSolved && outcome != StartOutcome::kSettled) set_lens(before, record);
   return outcome;
+}
+
+/// Of a solution that has been found by the readout as it was. False, with the record and the readout as they were but for its poses, where
+/// there is none by another one.
+bool StartBundle::find_readout(StartRecord& record, Scalar sigma_px, Scalar median_depth) {
+  const Camera before = lens_->camera;
+  const Spread spread = spread_over(record);
+  const int count = record.features();
+  lens_->rates[0] = record.rates(-1);
+  for (int c = 0; c < spread.count; ++c) {
+    const StartRecord::Frame& frame = record.frame(spread.frame[c]);
+    pose_[1 + c].q_WC = frame.q_WC;
+    pose_[1 + c].p_W = frame.p_W / median_depth;
+    lens_->rates[1 + c] = record.rates(spread.frame[c]);
+  }
+  for (int c = 0; c < 1 + spread.count; ++c) lens_->rates[c].v_W /= median_depth;
+  for (int i = 0; i < count; ++i) rho_[i] *= median_depth;
+  const BundleLens lens = {lens_->rows,  lens_->information, lens_->prior, &lens_->camera,
+                           lens_->pixel, record.rays(),      lens_->rates, before.readout};
+  Scalar variance = -1;
+  adjust(lens_->camera, record, spread.frame, spread.count, kRounds, sigma_px, &lens, &variance);
+  const Scalar found = lens_->camera.readout;
+  bool is_good[StartRecord::kMaxFeatures] = {};
+  move_readout(before, found, last_rho_, record);
+  bool solved = variance > Scalar(0) && list_good(lens_->camera, record, spread, sigma_px, is_good) >= kMinFeatures;
+  const Scalar unit = solved ? unit_of_length(is_good, count, median_depth) : 1 / median_depth;
+  solved = solved && place_frames(lens_->camera, record, spread, sigma_px, unit);
+  for (int i = 0; i < count; ++i) rho_[i] *= unit;
+  if (solved) {
+    for (int i = 0; i < count; ++i) last_rho_[i] = is_good[i] ? rho_[i] : Scalar(0);
+    lens_->readout_variance = kLensInflation * variance;
+  } else {
+    move_readout(lens_->camera, before.readout, last_rho_, record);
+    set_lens(before, record);
+  }
+  return solved;
 }
 
 /// camera: where the lens is adjusted, that which is.
@@ -190,8 +251,8 @@ bool StartBundle::adjust_spread(const Camera& camera, StartRecord& record, const
     pose_[1 + c].p_W = motion.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
     if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return false;
   }
-  const Scalar total = is_free_ ? adjust_with_lens(record, frame, spread.count, sigma_px)
-                                : adjust(camera, record, frame, spread.count, kRounds, sigma_px);
+  const Scalar total = adjusts_shape() ? adjust_with_lens(record, frame, spread.count, sigma_px)
+                                       : adjust(camera, record, frame, spread.count, kRounds, sigma_px);
   int pixels = 0;
   for (int c = 0; c < spread.count; ++c)
     for (int i = 0; i < count; ++i) pixels += record.seen(frame[c], i) ? 1 : 0;

@@ -28,8 +28,12 @@ class StartBundle {
   /// lens_rows: of the lens that a start may adjust with its depths; 0: it is exact.
   bool layout(Arena& arena, int lens_rows = 0);
   void init();
-  /// The lens is uncertain, and is adjusted with all cameras of a solution; until the next init.
-  void free_lens(const Camera& calibration, const LensPrior& prior);
+  /// The lens is uncertain, and is adjusted with all cameras of a solution; until the next init. Where the readout alone is, a solution is
+  /// adjusted once more with it, by the velocities of the solution's cameras, and the record's rays and pixels are those of their frames'
+  /// times by the new one. now: the camera by whose readout they are so to begin with.
+  void free_lens(const Camera& calibration, const LensPrior& prior, const Camera& now);
+  /// Variance of its readout after the last solution [s²]; where that has none, of the prior.
+  Scalar readout_variance() const { return lens_->readout_variance; }
   /// That of the last solution, and of the record's rays; null where it is exact.
   const Camera* lens() const { return is_free_ ? &lens_->camera : nullptr; }
 
@@ -61,6 +65,8 @@ class StartBundle {
     Scalar information[kLensParameters * kLensParameters];  ///< of the prior
     Camera prior, camera;
     HostPixel pixel[StartRecord::kMaxFeatures];  ///< of frame 0
+    BundleRates rates[1 + kMaxCameras];          ///< of each pose
+    Scalar readout_variance;
   };
 
   Scalar fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
@@ -82,8 +88,10 @@ class StartBundle {
   Scalar unit_of_length(const bool* is_good, int count, Scalar median_depth) const;
   bool place_frames(const Camera& camera, StartRecord& record, const Spread& spread, Scalar sigma_px, Scalar unit);
   Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
-                Scalar sigma_px, const BundleLens* lens = nullptr);
+                Scalar sigma_px, const BundleLens* lens = nullptr, Scalar* lens_covariance = nullptr);
   Scalar adjust_with_lens(StartRecord& record, const int* frame, int cameras, Scalar sigma_px);
+  bool adjusts_shape() const { return is_free_ && lens_->rows.shape_count() > 0; }
+  bool find_readout(StartRecord& record, Scalar sigma_px, Scalar median_depth);
   void set_lens(const Camera& camera, StartRecord& record);
   bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose);
 

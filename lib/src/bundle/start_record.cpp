@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "base/elapsed.h"
+#include "geometry/so3.h"
+
 namespace pf {
 
 bool StartRecord::layout(Arena& arena) {
@@ -11,7 +14,8 @@ bool StartRecord::layout(Arena& arena) {
   return arena.ok();
 }
 
-void StartRecord::init() {
+void StartRecord::init(std::int64_t begin_ns) {
+  begin_ns_ = begin_ns;
   frames_ = 0;
   features_ = 0;
 }
@@ -42,6 +46,16 @@ void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
   p.x = static_cast<float>(pixel.x());
   p.y = static_cast<float>(pixel.y());
   p.seen = true;
+}
+
+BundleRates StartRecord::rates(int k) const {
+  const Frame first = {begin_ns_, Quat::Identity(), Vec3::Zero()};
+  const int last = frames_ - 1;
+  const auto at = [&](int i) { return i < 0 ? first : frame_[i]; };
+  const Frame before = at(std::max(k - 1, -1)), after = at(std::min(k + 1, last));
+  const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(before.t_ns, after.t_ns)));
+  if (!(dt > Scalar(0))) return {Vec3::Zero(), Vec3::Zero()};
+  return {(after.p_W - before.p_W) / dt, log_so3(before.q_WC.conjugate() * after.q_WC) / dt};
 }
 
 }  // namespace pf

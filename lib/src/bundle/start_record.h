@@ -23,7 +23,8 @@ class StartRecord {
   };
 
   bool layout(Arena& arena);
-  void init();
+  /// begin_ns: time of frame 0.
+  void init(std::int64_t begin_ns = 0);
 
   /// Feature of frame 0, by the ray on which it was first seen; its index, or -1 when there are kMaxFeatures.
   int add_feature(const Vec3& ray);
@@ -31,7 +32,10 @@ class StartRecord {
   /// Adds a later frame with its estimated pose; add_pixel adds its pixels. Returns its index.
   int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
   void add_pixel(int frame, int feature, const Vec2& pixel);
+  /// Velocities of a frame by the poses of those beside it; -1: of frame 0.
+  BundleRates rates(int k) const;
 
+  std::int64_t begin_ns() const { return begin_ns_; }
   int frames() const { return frames_; }
   int features() const { return features_; }
   Frame& frame(int k) { return frame_[k]; }
@@ -49,6 +53,7 @@ class StartRecord {
   Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity
   Vec3* ray_ = nullptr;
   BundlePixel* pixel_ = nullptr;
+  std::int64_t begin_ns_ = 0;
   int frames_ = 0;
   int features_ = 0;
 };

@@ -135,14 +135,20 @@ void UnitKeeper::measure(bool follows, F&& measure) {
     again = true;
   }
   mode.max_pose_nis = watch_.begin_measuring(follows);
+  mode.as_usual = mode.max_pose_nis > Scalar(0);
   mode.depths_first = parts_ != nullptr && parts_->hold.has_just_ended(frame_.report.t_ns);
   const UpdateOutcome outcome = measure(again, mode);
   if (outcome.is_pose_open) parts_->hold.forget();
   if (!watch_.is_refused(outcome.is_contradicted)) return;
+  UpdateMode other;
+  other.as_usual = !outcome.is_contradicted;
   watch_.leave_prediction();
   frame_.begin_again();
-  measure(true, UpdateMode());
+  measure(true, other);
   watch_.settle(tracking_.is_tracked(frame_.report));
+  if (!other.as_usual || frame_.report.inliers > 0) return;
+  frame_.begin_again();
+  measure(true, UpdateMode());
 }
 
 }  // namespace pf

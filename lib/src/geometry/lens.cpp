@@ -100,6 +100,15 @@ void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
 }
 
 /// The covariance of a prior is positive definite.
+LensPrior readout_prior(const LensPrior& prior) {
+  LensPrior out;
+  if (!prior.rows.has_readout()) return out;
+  out.rows.count = 1;
+  out.rows.parameter[0] = kReadoutParameter;
+  out.variance[0] = prior.variance[prior.rows.count - 1];
+  return out;
+}
+
 void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information) {
   const int n = prior.rows.count;
   Scalar L[kLensParameters * kLensParameters];

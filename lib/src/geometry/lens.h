@@ -66,6 +66,9 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera);
 /// The same without the readout: for who compares pictures that are taken at once.
 LensPrior shape_prior(const LensPrior& prior);
 
+/// The readout alone: for who has other pictures to learn the rest from. No row where it is exact.
+LensPrior readout_prior(const LensPrior& prior);
+
 /// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment weights its pixels; the prior must have
 /// the same factor.
 void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information);

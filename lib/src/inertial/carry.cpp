@@ -158,12 +158,15 @@ void UnitWatch::carry(Archive& archive) {
   if (parts_ == nullptr) return;
   parts_->evidence.carry(archive);
   parts_->rates.carry(archive);
-  auto& [mode, rejected_ns, prior, prior_ns, follows, is_contradicted, is_taken_back, tracked, tracked_ns, is_aligned] =
-      parts_->data;
+  auto& [mode, rejected_ns, prior, prior_ns, follows, is_contradicted, is_taken_back, tracked, tracked_ns, is_aligned,
+         is_worse_than_none, by_samples, by_none, P_by_none] = parts_->data;
   archive.within(mode, 0, static_cast<int>(UnitMode::kRejected));
   archive.within(rejected_ns, 0, INT64_MAX / 2);
   archive.any(prior_ns, tracked_ns);
-  archive.flags(follows, is_contradicted, is_taken_back, is_aligned);
+  archive.flags(follows, is_contradicted, is_taken_back, is_aligned, is_worse_than_none);
+  archive.numbers(P_by_none);
+  pf::carry(archive, by_samples);
+  pf::carry(archive, by_none);
   pf::carry(archive, prior);
   pf::carry(archive, tracked);
 }

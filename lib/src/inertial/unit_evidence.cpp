@@ -33,7 +33,7 @@ Scalar UnitEvidence::contradiction(const UnitFrame& frame) const {
 void UnitEvidence::learn_noise(const UnitFrame& frame) {
   const FrameReport& report = frame_.report;
   data_.used_ns += frame.dt_ns;
-  if (!frame.is_tracked || seconds(data_.used_ns) < kFrozen) return;
+  if (!frame.is_tracked || frame.is_worse_than_none || seconds(data_.used_ns) < kFrozen) return;
   if (frame.is_taken_back) {
     noise_.note_innovation(UnitNoise::kGyro, kMaxOfFrame, 3);
   } else if (frame.before_was_tracked && report.pose.dof > 0) {
@@ -46,7 +46,8 @@ void UnitEvidence::learn_noise(const UnitFrame& frame) {
 
 /// Innovations count against the unit once no plausible noise explains them.
 bool UnitEvidence::add(const UnitFrame& frame, UnitMode mode) {
-  const bool explained = !noise_.is_at_bound(UnitNoise::kGyro) && !noise_.is_at_bound(UnitNoise::kAccel);
+  const bool explained =
+      !frame.is_worse_than_none && !noise_.is_at_bound(UnitNoise::kGyro) && !noise_.is_at_bound(UnitNoise::kAccel);
   const Scalar more = contradiction(frame) - kSlack;
   data_.sum = std::max(Scalar(0), data_.sum + (explained ? std::min(more, Scalar(0)) : more));
   if (!(data_.sum < (mode == UnitMode::kProbation ? kBoundOnProbation : kBound))) return true;

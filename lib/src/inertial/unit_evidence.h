@@ -22,8 +22,9 @@ class Archive;
 struct UnitFrame {
   bool before_was_tracked = false;  ///< the frame before, and so was the pose that this one's prediction begins at
   bool is_tracked = false;
-  bool is_taken_back = false;  ///< it was predicted again without samples
-  std::int64_t dt_ns = 0;      ///< since the frame before
+  bool is_taken_back = false;       ///< it was predicted again without samples
+  bool is_worse_than_none = false;  ///< and samples had predicted it worse than none
+  std::int64_t dt_ns = 0;           ///< since the frame before
 };
 
 class UnitEvidence {

@@ -6,6 +6,7 @@
 
 #include "base/elapsed.h"
 #include "filter/inertial_motion.h"
+#include "geometry/small_cholesky.h"
 #include "inertial/tuning.h"
 
 namespace pf {
@@ -15,6 +16,12 @@ using namespace tuning::unit_watch;
 namespace {
 
 constexpr double kRateChange = 4;  ///< sample intervals, of which the angular acceleration is taken
+
+Mat6 pose_covariance(const Filter& filter) {
+  Scalar P[6 * 6];
+  filter.body_covariance(6, P);
+  return Eigen::Map<const Eigen::Matrix<Scalar, 6, 6, Eigen::RowMajor>>(P);
+}
 
 }  // namespace
 
@@ -64,6 +71,7 @@ void UnitWatch::begin_frame(std::int64_t before_ns, std::int64_t t_ns) {
     if (reading_at(imu_, motion_.on_unit_clock(before_ns), &reading)) return_to_samples(reading);
   }
   parts_->data.follows = parts_->data.is_contradicted = parts_->data.is_taken_back = false;
+  parts_->data.is_worse_than_none = false;
   keep_prior(before_ns);
 }
 
@@ -83,16 +91,41 @@ bool UnitWatch::is_refused(bool is_contradicted) {
   if (parts_ == nullptr || !parts_->data.follows) return false;
   const FrameReport& report = frame_.report;
   const bool nothing_used = report.inliers == 0;
-  parts_->data.is_contradicted = is_contradicted || (nothing_used && report.matches >= settings_.min_inliers);
+  const bool disagree = report.matches >= settings_.min_inliers && report.consensus < settings_.min_inliers;
+  parts_->data.is_contradicted = is_contradicted || (nothing_used && disagree);
   return parts_->data.is_contradicted || (nothing_used && report.attempts >= settings_.min_inliers);
 }
 
 void UnitWatch::leave_prediction() {
-  parts_->data.is_taken_back = true;
+  Data& data = parts_->data;
+  data.is_taken_back = true;
+  data.by_samples = filter_.state().body;
   predict_again(false);
+  data.by_none = filter_.state().body;
+  data.P_by_none = pose_covariance(filter_);
+}
+
+/// Of the two errors e = pose - prediction, with the covariance of the correction from the prediction without samples:
+///
+///   e_sᵀ (P⁻ - P⁺)⁻¹ e_s - e_nᵀ (P⁻ - P⁺)⁻¹ e_n > slack
+///
+/// A unit that is merely noisier than stated still predicts better than none.
+bool UnitWatch::is_worse_than_none() const {
+  const Data& data = parts_->data;
+  const Body& body = filter_.state().body;
+  SmallCholesky<6> S;
+  if (!S.factor(Mat6(data.P_by_none - pose_covariance(filter_)))) return false;
+  const auto nis = [&](const Body& predicted) {
+    Vec6 e;
+    e << log_so3(body.q_WC * predicted.q_WC.conjugate()), body.p_W - predicted.p_W;
+    return e.dot(S.solve<1>(e));
+  };
+  return nis(data.by_samples) - nis(data.by_none) > kSlack;
 }
 
 void UnitWatch::settle(bool is_tracked) {
+  if (!parts_->data.is_taken_back) return;
+  parts_->data.is_worse_than_none = is_tracked && is_worse_than_none();
   if (is_tracked || parts_->data.is_contradicted || frame_.report.inliers > 0) return;
   predict_again(true);
   parts_->data.is_taken_back = false;
@@ -201,7 +234,8 @@ bool UnitWatch::take_alignment() {
 
 bool UnitWatch::note(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns) {
   if (parts_ == nullptr) return false;
-  const UnitFrame frame = {before_was_tracked, is_tracked, parts_->data.is_taken_back, dt_ns};
+  const UnitFrame frame = {before_was_tracked, is_tracked, parts_->data.is_taken_back, parts_->data.is_worse_than_none,
+                           dt_ns};
   UnitEvidence& evidence = parts_->evidence;
   if (is_rejected(parts_->data.mode)) parts_->data.rejected_ns += dt_ns;
   evidence.note_frame();

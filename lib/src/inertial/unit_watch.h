@@ -72,7 +72,10 @@ class UnitWatch {
     bool is_taken_back = false;    ///< in this frame
     Body tracked;                  ///< at the last tracked frame
     std::int64_t tracked_ns = 0;
-    bool is_aligned = false;  ///< set by take_alignment()
+    bool is_aligned = false;          ///< set by take_alignment()
+    bool is_worse_than_none = false;  ///< in this frame: taken back, and samples had predicted worse than none
+    Body by_samples, by_none;         ///< of a frame that was taken back: its two predictions
+    Mat6 P_by_none = Mat6::Zero();    ///< covariance of the latter's (theta, p)
   };
 
   struct Parts {
@@ -83,6 +86,7 @@ class UnitWatch {
 
   bool is_silent(std::int64_t t_ns) const;
   void predict_again(bool by_samples);
+  bool is_worse_than_none() const;
   void note_rate();
   void leave_samples(std::int64_t before_ns);
   void return_to_samples(ImuReading reading);

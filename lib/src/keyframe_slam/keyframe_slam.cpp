@@ -95,12 +95,12 @@ void KeyframeSlam::track() {
                         is_gone ? "it was not found again within motion.restart_s"
                                 : "part of the image stands still while the rest moves, and is masked from now on");
   }
-  measure();
-  if (unit_.take_pose(placement_.map_of_unit(data_.median_depth), false)) {
-    frame_.begin_again();
+  bool again = false;
+  do {
+    if (again) frame_.begin_again();
     measure();
-    unit_.take_pose(placement_.map_of_unit(data_.median_depth), true);
-  }
+    again = unit_.take_pose(placement_.map_of_unit(data_.median_depth));
+  } while (again);
   data_.is_map_fixed = search_.note_fixed();
   learn();
   if (data_.second.given && data_.second.has_come(frame_.report.t_ns))

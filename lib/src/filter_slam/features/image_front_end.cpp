@@ -106,7 +106,8 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
     if (is_first) {
       log_odds = weigh(range, consensus, mode);
       accepted = mode.starts ? inliers >= std::min(kMinConsensus, map_.features.count())
-                             : hypotheses_.accepts(consensus, log_odds, range.is_last);
+                             : hypotheses_.accepts(consensus, log_odds, range.is_last) &&
+                                   !(mode.update.as_usual && belief_.share().is_unlikely(range.searched, inliers));
     } else {  // beside accepted matches any consensus is enough
       log_odds = PoseBelief::updated(belief_.log_odds(), belief_.evidence(consensus));
       accepted = inliers > 0;

@@ -28,6 +28,7 @@ struct UpdateMode {
   /// While most measured depths are open, pixels update the map, and the pose is considered (lib/docs/theory/inertial.md, "Depths first").
   bool depths_first = false;
   Scalar max_pose_nis = 0;  ///< the first update of a frame is rejected where its pose NIS is above this; 0: no bound
+  bool as_usual = false;    ///< and where fewer points are found than usual (FindShare): there is another prediction
 };
 
 /// What the updates of a frame have found.

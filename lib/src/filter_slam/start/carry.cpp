@@ -13,7 +13,8 @@ void MapBeginning::carry(Archive& archive) {
 }
 
 void StartRecorder::carry(Archive& archive) {
-  if (archive.is_reading() && adjusts_lens()) record_.free_lens(settings_.camera, shape_prior(settings_.lens));
+  if (archive.is_reading() && adjusts_lens())
+    record_.free_lens(settings_.camera, shape_prior(settings_.lens), settings_.camera);
   record_.carry(archive);
 }
 

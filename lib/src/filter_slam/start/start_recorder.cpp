@@ -17,7 +17,8 @@ void StartRecorder::begin_record() {
   if (beginning_.known().given) beginning_.note_covariance();
   const CameraAt camera = camera_at(filter_.state(), Scalar(0));
   record_.begin_record(camera.q_WC, camera.p_W, frame_.report.t_ns);
-  if (adjusts_lens() && !progress().checking) record_.free_lens(settings_.camera, shape_prior(settings_.lens));
+  if (adjusts_lens() && !progress().checking)
+    record_.free_lens(settings_.camera, shape_prior(settings_.lens), settings_.camera);
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     Vec3 ray_C;

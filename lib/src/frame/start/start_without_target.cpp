@@ -20,7 +20,7 @@ void StartWithoutTarget::init() {
 }
 
 void StartWithoutTarget::begin_record(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns) {
-  record_.init();
+  record_.init(t_ns);
   bundle_.init();
   data_.base_q_WC = q_WC;
   data_.base_p_W = p_W;

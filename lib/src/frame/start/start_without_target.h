@@ -32,7 +32,9 @@ class StartWithoutTarget {
   /// Begins the record with this frame. Its camera is the record's frame of reference.
   void begin_record(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
   /// The lens has this prior, and is adjusted with the depths of this record.
-  void free_lens(const Camera& calibration, const LensPrior& prior) { bundle_.free_lens(calibration, prior); }
+  void free_lens(const Camera& calibration, const LensPrior& prior, const Camera& now) {
+    bundle_.free_lens(calibration, prior, now);
+  }
   /// Adds a feature of the first frame, by its ray there.
   void add_feature(std::uint32_t id, const Vec3& ray_C);
   /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time.

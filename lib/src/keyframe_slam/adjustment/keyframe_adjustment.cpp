@@ -73,16 +73,10 @@ void KeyframeAdjustment::adjust(bool with_lens, const RhoPrior& prior, const Bun
   const Scalar inflation = noise_.correlation_frames();
   Camera camera = map_.camera();
   Scalar information[KeyframeLens::kMaxEntries];
-  lens_information(settings_.lens, inflation, information);
+  lens_information(map_.lens().prior(), inflation, information);
   const bool with_readout = with_lens && map_.lens().rows().has_readout();
-  const BundleLens lens = {map_.lens().rows(),
-                           information,
-                           settings_.camera,
-                           &camera,
-                           points.host_pixel,
-                           points.ray,
-                           with_readout ? poses.rates : nullptr,
-                           camera.readout};
+  const BundleLens lens = {map_.lens().rows(), information, map_.lens().prior_camera(),           &camera,
+                           points.host_pixel,  points.ray,  with_readout ? poses.rates : nullptr, camera.readout};
   if (with_readout) fill_rates(map_, poses);
   for (int p = 0; p < points.count && with_lens; ++p) points.host_pixel[p] = map_.host_pixel(points.row[p]);
   const Bundle bundle = {poses.pose,

@@ -15,8 +15,8 @@ void MapRuler::carry(Archive& archive) {
 /// A filter that has begun has the two blocks of its ruler, and they are what they are taken for.
 void KeyframeUnit::carry(Archive& archive) {
   if (parts_ == nullptr) return;
-  auto& [has_begun, is_from_motion, follows, begin_ns, left, newest] = data_;
-  archive.flags(has_begun, is_from_motion, follows);
+  auto& [has_begun, is_from_motion, has_other, is_again, follows, begin_ns, left, newest] = data_;
+  archive.flags(has_begun, is_from_motion, has_other, is_again, follows);
   archive.any(begin_ns, newest);
   pf::carry(archive, left);
   auto& [filter, ruler, motion, mounting, rest, watch, hold, moving, forces] = *parts_;

@@ -112,6 +112,8 @@ bool KeyframeUnit::predict(std::int64_t before_ns, bool follows, bool coasting_o
   if (!has_begun()) return false;
   const std::int64_t t_ns = frame_.report.t_ns;
   data_.follows = follows;
+  data_.is_again = false;
+  data_.has_other = follows;
   parts_->ruler.move_about(data_.left, motion_.view());
   parts_->watch.begin_frame(before_ns, t_ns);
   if (parts_->watch.take_alignment()) {
@@ -138,7 +140,7 @@ void KeyframeUnit::put_prediction() {
   KeyframeMotion::Covariance P = filter.covariance_of<12>(rows);
   const Scalar of_gyro = noise().gyro_density;  // of one sample
   P.bottomRightCorner<3, 3>().diagonal().array() += of_gyro * of_gyro * static_cast<Scalar>(imu_.rate_hz());
-  motion_.set_prediction(parts_->ruler.body(), P);
+  motion_.set_prediction(parts_->ruler.body(), P, data_.has_other ? tuning::unit_watch::kMaxPoseNis : Scalar(0));
   data_.left = motion_.view();
 }
 
@@ -168,19 +170,21 @@ bool KeyframeUnit::update(Scalar max_nis) {
   return true;
 }
 
-bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
+bool KeyframeUnit::take_pose(const MapOfUnit& map) {
   if (parts_ == nullptr) return false;
   if (!data_.has_begun) {
     if (map.is_tracked && !map.is_pending) begin(map);
     return false;
   }
   const bool has_pose = map.is_tracked && motion_.measured().is_set;
-  if (again) {
+  if (data_.is_again) {
     if (has_pose) update(0);
     parts_->watch.settle(map.is_tracked);
+    const bool again = !map.is_tracked && data_.has_other;
+    data_.has_other = false;
     if (!map.is_tracked) put_prediction();
     data_.left = motion_.view();
-    return false;
+    return again;
   }
   const Scalar of_samples = parts_->watch.begin_measuring(data_.follows);
   bool fits = !has_pose || update(data_.follows ? of_samples : tuning::unit_watch::kMaxPoseNis);
@@ -189,7 +193,8 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
     parts_->ruler.move_about({predicted.q_WC, predicted.p_W}, motion_.view());
     fits = true;
   }
-  if (!parts_->watch.is_refused(!fits)) {
+  const bool is_open = data_.has_other && frame_.report.inliers == 0;
+  if (!parts_->watch.is_refused(!fits) && !is_open) {
     data_.left = motion_.view();
     return false;
   }
@@ -201,6 +206,7 @@ bool KeyframeUnit::take_pose(const MapOfUnit& map, bool again) {
   }
   if (!has_pose) {
     put_prediction();
+    data_.is_again = true;
     return true;
   }
   update(0);

@@ -43,9 +43,10 @@ class KeyframeUnit {
 
   /// True where samples, or their filter, have predicted the body to this frame. follows: the frame before was tracked.
   bool predict(std::int64_t before_ns, bool follows, bool coasting_or_lost, bool nothing_measured, Scalar median_depth);
-  /// Takes the pose that the frame has measured. True where the frame is to be measured again from a prediction without samples, which the
-  /// body has then: hardly anything was found about the one by samples. again: after that.
-  bool take_pose(const MapOfUnit& map, bool again);
+  /// Takes the pose that the frame has measured. True where the frame is to be measured again from another prediction, which the body has
+  /// then: first without samples, if hardly anything was found about the one by samples, then by samples once more, if nothing was found
+  /// at all, and is measured by all that can be found.
+  bool take_pose(const MapOfUnit& map);
   /// After a frame. True the first time that samples give metres: by motion, with *solution, or, in a map whose unit is known, by a rest
   /// (is_from_motion()).
   bool look_for_scale(const MapOfUnit& map, MovingSolution* solution);
@@ -99,7 +100,9 @@ class KeyframeUnit {
   struct Data {
     bool has_begun = false;
     bool is_from_motion = false;
-    bool follows = false;  ///< the frame before was tracked, and so was the pose that this one's prediction begins at
+    bool has_other = false;  ///< this frame has another prediction yet
+    bool is_again = false;   ///< it is measured from another prediction than its first one
+    bool follows = false;    ///< the frame before was tracked, and so was the pose that this one's prediction begins at
     std::int64_t begin_ns = 0;  ///< of the filter
     CameraView left;            ///< where the body was at the end of the last frame
     int newest = 0;             ///< number of the last keyframe whose adjustment was followed

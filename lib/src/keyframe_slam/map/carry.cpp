@@ -11,6 +11,7 @@ namespace pf {
 void KeyframeLens::carry(Archive& archive) {
   pf::carry(archive, camera_);
   archive.numbers(covariance_);
+  if (rows_.has_readout()) archive.numbers(prior_camera_.readout, prior_.variance[rows_.count - 1]);
 }
 
 void KeyframeTable::carry(Archive& archive, const FeatureTable& features) {

@@ -19,6 +19,12 @@ class KeyframeLens {
   const Camera& camera() const { return camera_; }
   const Scalar* covariance() const { return covariance_; }
 
+  /// What is known of it before its adjustments: the calibration and, of a readout that a start has measured, that.
+  const Camera& prior_camera() const { return prior_camera_; }
+  const LensPrior& prior() const { return prior_; }
+  /// A start has measured the readout with this variance, that of the calibration included.
+  void begin_readout(Scalar readout, Scalar variance);
+
   /// Of the readout [s^2]; 0 where it is exact.
   Scalar readout_variance() const {
     return rows_.has_readout() ? covariance_[rows_.count * rows_.count - 1] : Scalar(0);
@@ -32,7 +38,8 @@ class KeyframeLens {
 
  private:
   LensRows rows_;
-  Camera camera_;
+  Camera camera_, prior_camera_;
+  LensPrior prior_;
   Scalar covariance_[kMaxEntries] = {};
 };
 

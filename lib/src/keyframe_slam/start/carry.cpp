@@ -6,6 +6,7 @@
 namespace pf {
 
 void KeyframeRecord::carry(Archive& archive) {
+  if (archive.is_reading()) free_readout();
   solver_.carry(archive);
   archive.counts(solved_before_);
   for (int i = 0; i < solver_.record().features(); ++i) archive.numbers(rho_[i]);

@@ -20,7 +20,7 @@ using namespace tuning::keyframe_start;
 bool KeyframeRecord::layout(Arena& arena) {
   rotation_.layout(arena);
   rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
-  return solver_.layout(arena);
+  return solver_.layout(arena, readout_prior(settings_.lens).rows.count);
 }
 
 void KeyframeRecord::init() {
@@ -38,6 +38,7 @@ void KeyframeRecord::begin_at_keyframe() {
   const Body& body = motion_.body();
   std::fill(rho_, rho_ + StartRecord::kMaxFeatures, Scalar(1));
   solver_.begin_record(body.q_WC, body.p_W, frame_.report.t_ns);
+  free_readout();
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     Vec3 ray_C;
@@ -188,6 +189,26 @@ void KeyframeRecord::take_points() {
   }
 }
 
+/// A readout that nothing tells is an unknown of the record's solution, whose depths it would bend.
+void KeyframeRecord::free_readout() {
+  const LensPrior prior = readout_prior(settings_.lens);
+  if (prior.rows.count > 0) solver_.free_lens(settings_.camera, prior, map_.camera());
+}
+
+/// The map's pixels are those of their frames' times by the solution's readout, which is what adjustments begin with.
+void KeyframeRecord::take_readout() {
+  const Camera* const solved = solver_.bundle().lens();
+  if (solved == nullptr) return;
+  Camera camera = map_.camera();
+  camera.readout = solved->readout;
+  map_.move_lens(camera);
+  map_.lens().begin_readout(solved->readout, solver_.bundle().readout_variance());
+  for (const int i : used_entries(map_)) {
+    const int index = solver_.index_of(map_.feature(i).id);
+    if (index >= 0) map_.point(i).ray_K = solver_.record().ray(index).normalized();
+  }
+}
+
 /// Depths and poses of the solved record. The frame becomes a keyframe, and velocities are those of the record's last frames.
 void KeyframeRecord::take_solution() {
   solved_before_ = 0;
@@ -202,7 +223,10 @@ void KeyframeRecord::take_solution() {
   Mat6 P = Mat6::Identity() * (kRotationSigma * kRotationSigma);
   P.bottomRightCorner<3, 3>() *= settings_.start_depth * settings_.start_depth;
   motion_.set(body, P, kSpeedSigma * settings_.start_depth, tuning::filter_start::kStartRate);
-  add_keyframe(frame_, now, settings_.window_keyframes, &map_);
+  const int keyframe = add_keyframe(frame_, now, settings_.window_keyframes, &map_);
+  map_.keyframes[keyframe].v_W = body.v_W;
+  map_.keyframes[keyframe].w_C = body.w_C;
+  take_readout();
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     if (match.feature >= 0 && match.status == MatchStatus::kInlier) map_.point(match.feature).seen_from = now;

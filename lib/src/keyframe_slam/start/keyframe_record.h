@@ -53,6 +53,8 @@ class KeyframeRecord {
   void set_first_speeds();
   void note_second_pose();
   void take_points();
+  void free_readout();
+  void take_readout();
   void take_solution();
 
   const Settings& settings_;

@@ -8,10 +8,10 @@
 namespace pf {
 
 void KeyframeMotion::carry(Archive& archive) {
-  auto& [body, P, dv_C, dw_C, measured] = data_;
+  auto& [body, P, dv_C, dw_C, measured, max_nis] = data_;
   auto& [is_set, q_WC, p_W, R] = measured;
   pf::carry(archive, body);
-  archive.numbers(P, dv_C, dw_C, q_WC, p_W, R);
+  archive.numbers(P, dv_C, dw_C, q_WC, p_W, R, max_nis);
   archive.flags(is_set);
 }
 
@@ -28,7 +28,9 @@ void PoseMeasurement::carry(Archive& archive) { pose_.carry(archive); }
 
 void KeyframeTracking::carry(Archive& archive) {
   hypotheses_.carry(archive);
-  if (archive.is_reading()) found_ = 0;
+  if (!archive.is_reading()) return;
+  found_ = 0;
+  first_ = First();
 }
 
 void KeyframeRelocaliser::carry(Archive& archive) {

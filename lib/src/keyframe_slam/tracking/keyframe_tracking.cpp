@@ -1,11 +1,13 @@
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/elapsed.h"
 #include "frame/ellipse.h"
 #include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
 #include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/tracking/body_correction.h"
@@ -22,6 +24,7 @@ void KeyframeTracking::measure(Scalar median_depth) {
   Mat6 information = Mat6::Zero();
   hypotheses_.begin();
   if (!measure_placed(prior, &pose, &information)) {
+    if (motion_.max_nis() > Scalar(0)) return;
     measure_all(prior, median_depth);
     if (frame_.report.inliers > 0 || !search_.find_followed()) return;
     frame_.forget_searches();
@@ -34,10 +37,37 @@ void KeyframeTracking::measure(Scalar median_depth) {
   if (corrected) measure_unplaced(median_depth);
 }
 
-/// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose.
+/// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose, or another prediction
+/// is to be tried.
 bool KeyframeTracking::measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information) {
   PoseConsensus consensus;
-  return measure_about(prior, pose, information, &consensus) > 0 && is_believed(consensus);
+  const bool has_other = motion_.max_nis() > Scalar(0), is_second = first_.t_ns == frame_.report.t_ns;
+  if (!is_second) first_ = {frame_.report.t_ns, std::numeric_limits<Scalar>::lowest()};
+  if (measure_about(prior, pose, information, &consensus) == 0) return false;
+  if (has_other) {
+    const Scalar evidence = belief_.evidence(consensus);
+    const bool are_few = belief_.share().is_unlikely(consensus.searched, consensus.inliers);
+    if (is_second && are_few && !(evidence > first_.evidence)) return false;
+    if (!is_second && (are_few || contradicts(*pose, *information))) {
+      first_.evidence = evidence;
+      return false;
+    }
+  }
+  return is_believed(consensus);
+}
+
+/// A prediction that is as far from the pose as hardly ever by chance: it has pulled the pose, and left out points.
+bool KeyframeTracking::contradicts(const CameraPose& pose, const Mat6& information) const {
+  KeyframeMotion after = motion_;
+  PosePrior now;
+  if (!correct_body(pose, information, &after, &now) || !after.measured().is_set) return false;
+  const KeyframeMotion::MeasuredPose& measured = after.measured();
+  const Body& predicted = motion_.body();
+  Vec6 e;
+  e << log_so3(measured.q_WC * predicted.q_WC.conjugate()), measured.p_W - predicted.p_W;
+  SmallCholesky<6> S;
+  return S.factor(Mat6(motion_.pose_covariance() + noise_.correlation_frames() * measured.R)) &&
+         e.dot(S.solve<1>(e)) > motion_.max_nis();
 }
 
 /// Weighs what was found about the prediction.

@@ -26,7 +26,9 @@ class KeyframeTracking {
         hypotheses_(settings, belief) {}
 
   /// Finds points with a depth about the predicted pose, and updates the body with the pose fitted to them; then finds those without a
-  /// depth. Where those with a depth give no pose, it is fitted to all.
+  /// depth. Where those with a depth give no pose, it is fitted to all. While another prediction can be tried it is fitted to none, nor
+  /// used where it contradicts the first one, or where fewer points than usual have it and the first one had more evidence: points without
+  /// a depth follow any translation, and are no evidence between predictions.
   void measure(Scalar median_depth);
   /// While few points have a depth: finds all points about the predicted pose, and updates the body with the pose fitted to all. A point
   /// without a depth constrains the pose but for a translation along its epipolar line.
@@ -55,6 +57,7 @@ class KeyframeTracking {
   void accept_marked();
   void accept(const Vec2& pixel, Match* match);
   bool measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information);
+  bool contradicts(const CameraPose& pose, const Mat6& information) const;
   void measure_all(const PosePrior& prior, Scalar median_depth);
   void fit_all(int found, const PosePrior& prior, Scalar median_depth);
   bool is_believed(const PoseConsensus& consensus);
@@ -69,6 +72,12 @@ class KeyframeTracking {
   PoseMeasurement& pose_;
   PoseBelief& belief_;
   PoseHypotheses hypotheses_;
+  /// What the first prediction of a frame has found.
+  struct First {
+    std::int64_t t_ns = INT64_MIN;
+    Scalar evidence = 0;
+  };
+  First first_;
   int found_ = 0;  ///< points with a depth, by the last measure_about(), at the front of the search's list
 };
 

@@ -25,6 +25,7 @@ Scalar largest_variance(const KeyframeMotion::Covariance& P, int first_row) {
 void KeyframeMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate) {
   data_.body = body;
   data_.measured.is_set = false;
+  data_.max_nis = 0;
   data_.P.setZero();
   data_.P.topLeftCorner<6, 6>() = pose;
   if (!has_velocity()) return;
@@ -69,6 +70,7 @@ void KeyframeMotion::apply(const Transition& transition, Data* data) {
 void KeyframeMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, t_ns), kMaxGapNs)));
   data_.measured.is_set = false;
+  data_.max_nis = 0;
   if (data_.dv_C != Vec3::Zero() || data_.dw_C != Vec3::Zero()) {
     Transition control;
     change_velocity(data_.body, layout(), data_.dv_C, data_.dw_C, &control);

@@ -32,9 +32,11 @@ class KeyframeMotion {
   }
   void forget_control() { data_.dv_C = data_.dw_C = Vec3::Zero(); }
   /// The body as something else has predicted it to the frame's time, in place of advance(); or as it was before a measurement.
-  void set_prediction(const Body& body, const Covariance& P) {
+  /// max_nis: another prediction can be tried, and a pose with a NIS above this contradicts this one; 0: there is no other.
+  void set_prediction(const Body& body, const Covariance& P, Scalar max_nis = 0) {
     data_.body = body;
     data_.P = P;
+    data_.max_nis = max_nis;
     data_.measured.is_set = false;
   }
   /// Predicts the body from one frame's time to the next, with the control that was pushed. Without measurements its speed decays.
@@ -72,6 +74,7 @@ class KeyframeMotion {
     Mat6 R = Mat6::Zero();
   };
   const MeasuredPose& measured() const { return data_.measured; }
+  Scalar max_nis() const { return data_.max_nis; }  ///< of set_prediction()
   /// All of W is moved.
   void move(const Similarity& T);
   /// Sets the pose's covariance alone, and drops its correlation with the velocities.
@@ -95,6 +98,7 @@ class KeyframeMotion {
     Covariance P = Covariance::Zero();  ///< of (theta, p, v, w); without velocities their rows are zero
     Vec3 dv_C = Vec3::Zero(), dw_C = Vec3::Zero();
     MeasuredPose measured;
+    Scalar max_nis = 0;
   };
 
   /// With an inertial unit too: it moves another body, and this one where its samples cannot.

@@ -83,8 +83,7 @@ int PoseMeasurement::fit(int found, const PosePrior& prior, Scalar depth, int sh
   return inliers;
 }
 
-/// By points that have a depth; each with the noise that its depth adds. A map of images that unknown rows have bent is no measure of
-/// another image's focal length: the evidence counts by the share of the readout's prior variance that adjustments have removed.
+/// By points that have a depth; each with the noise that its depth adds.
 void PoseMeasurement::weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const {
   ZoomPoints points;
   for (int c = 0; c < found; ++c) {
@@ -93,10 +92,6 @@ void PoseMeasurement::weigh_lens(int found, const CameraPose& pose, PoseConsensu
     points.add(match.point, match.noise.trace() / 2, match.by_readout);
   }
   note_zoom(points.fit(map_.camera(), pose), settings_, consensus);
-  const LensPrior& prior = settings_.lens;
-  if (!prior.rows.has_readout()) return;
-  const Scalar open = map_.lens().readout_variance() / prior.variance[prior.rows.count - 1];
-  consensus->lens_evidence *= std::clamp(1 - open, Scalar(0), Scalar(1));
 }
 
 PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
