@@ -149,7 +149,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
   }
   frames_.rows() =
       "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,planes,folded,trial,fixed,rows_points_only,"
-      "tracked,log_odds,consensus,reason\n";
+      "tracked,log_odds,consensus,reason,masked_permille\n";
   tracks_.rows() = TrackRows::kTracksHeader;
   planes_.rows() = TrackRows::kPlanesHeader;
   patches_.rows() = "frame,id,wall,status,frames,weight,u0,v0,u1,v1,u2,v2,u3,v3\n";
@@ -228,11 +228,11 @@ bool Outputs::write(const FrameView& view, Source& source, const MotionWindow* w
   }
   std::string& frames = frames_.rows();
   put_seconds(frames, view.image.t_ns);
-  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d,%d,%d,%d,%d,%d,%.2f,%d,%s\n", state_name(report.state),
+  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d,%d,%d,%d,%d,%d,%.2f,%d,%s,%u\n", state_name(report.state),
          report.attempts, report.matches, report.inliers, report.features, report.state_dim, view.ms, report.nis,
          report.nis_dof, report.planes, report.features_folded, report.features_trial, report.features_fixed,
          report.state_dim_points_only, view.tracked ? 1 : 0, report.log_odds, report.consensus,
-         reason_name(report.reason));
+         reason_name(report.reason), report.masked_permille);
   if (view.has_pose) {
     put_tum(trajectory_all_.rows(), view.pose);
   }

@@ -283,6 +283,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   for (int32_t reason = PF_FRAME_REASON_NONE + 1; reason <= PF_FRAME_REASON_LENS; ++reason)
     not_tracked[reason_name(reason)] = reasons_[reason];
   json["not_tracked"] = not_tracked;
+  json["masked_share"] = rounded(0.001 * static_cast<double>(last_report_.masked_permille));
   json["new_features"] = new_features_;
   json["evicted"] = evicted_;
   json["track_length"] = {

@@ -1032,7 +1032,9 @@ typedef struct pf_report {
   /* The map in whose W those poses were given out: map_id, unless the map goes on under another id
    * (MAPS). All that was given out in it is then of map_id once it is corrected. */
   uint32_t correction_from_map_id;
-  uint32_t reserved; /* 0 */
+  /* Of the image, since the beginning: what stands still in it while the rest moves, and is
+   * masked (lib/docs/theory/belief.md) [1/1000]. Without what pf_set_mask masks. */
+  uint32_t masked_permille;
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -265,6 +265,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   copy_quaternion(correction.T.q, report->correction_q);
   copy(correction.T.t, 3, report->correction_p);
   report->correction_from_map_id = correction.from_map_id != 0 ? correction.from_map_id : report->map_id;
+  report->masked_permille = static_cast<uint32_t>(view.frame().masked);
   report->templates = r.templates;
   if (r.templates > 0) report->template_area = static_cast<double>(r.template_area / static_cast<float>(r.templates));
   return PF_OK;

@@ -30,7 +30,7 @@ UpdateOutcome ImageTracking::recover_or_measure(const MeasureMode& mode, bool is
   if (now.is_vague) tracking_.belief().spend();
   UpdateOutcome outcome = front_end_.measure(now);
   if (now.is_vague && frame_.report.inliers == 0) outcome = relocaliser_.recover(now, outcome);
-  is_map_fixed_ = front_end_.search().note_fixed();
+  is_map_fixed_ = front_end_.search().note_fixed(tracking_.has_pose() && frame_.report.inliers > 0);
   return outcome;
 }
 
@@ -42,6 +42,7 @@ void ImageTracking::learn_noise() {
 void ImageTracking::keep_view(bool image_usable, const StartProgress& start, Scalar median_depth) {
   front_end_.note_view(tracking_.is_tracked(frame_.report) && !start.recording, median_depth);
   if (image_usable && frame_.report.inliers > 0) front_end_.search().keep_view();
+  front_end_.search().follow(frame_.correction.T);
 }
 
 }  // namespace pf

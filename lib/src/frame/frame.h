@@ -83,6 +83,7 @@ class Frame {
  public:
   FrameReport report;
   MapCorrection correction;
+  int masked = 0;  ///< of the image, as fixed to it, since the beginning [1/1000]
 
   /// Notes the inliers of a pose about which the frame was searched; the largest count stays in the report.
   void note_consensus(int inliers) { report.consensus = inliers > report.consensus ? inliers : report.consensus; }
@@ -95,6 +96,7 @@ class Frame {
   void init() {
     report = FrameReport();
     correction = MapCorrection();
+    masked = 0;
     count_ = 0;
   }
   /// Begins the next frame: an empty report with its time and its number, no correction and no matches.

@@ -32,9 +32,10 @@ class ImageSearch {
   bool learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const;
 
   /// After a frame's searches: masks what stands still in the image from the next frame on. True where the map has come from it.
-  bool note_fixed(const Camera& camera, const Frame& frame, FeatureTable* features) {
-    return fixed_.note(camera, frame, features);
+  bool note_fixed(const Camera& camera, const KnownScene* scene, Frame* frame, FeatureTable* features) {
+    return fixed_.note(camera, scene, frame, features);
   }
+  FixedFeatures& fixed() { return fixed_; }
 
   bool has_templates() const { return templates_ != nullptr; }
   const Tracker& tracker() const { return tracker_; }

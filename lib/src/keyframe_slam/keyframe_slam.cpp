@@ -101,7 +101,7 @@ void KeyframeSlam::track() {
     measure();
     again = unit_.take_pose(placement_.map_of_unit(data_.median_depth));
   } while (again);
-  data_.is_map_fixed = search_.note_fixed();
+  data_.is_map_fixed = search_.note_fixed(motion_.view());
   learn();
   if (data_.second.given && data_.second.has_come(frame_.report.t_ns))
     placement_.scale_by_second_pose(&data_.median_depth);
@@ -205,6 +205,7 @@ Status KeyframeSlam::end_frame() {
   }
   if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || record_.progress().pending()))
     search_.keep_view(motion_.view());
+  search_.follow(frame_.correction.T);
   anchors_.follow(tracking_.map_id(), data_.median_depth);
   return tracking_.conclude(record_.progress(), settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }

@@ -28,6 +28,8 @@ class ImageMask {
 
   bool has_masked() const { return masked_ > 0 || (also_ != nullptr && also_->has_masked()); }
   int cells() const { return columns_ * rows_; }
+  /// Share of the image that is masked here, without what counts as well [1/1000].
+  int share() const { return 1000 * masked_ / cells(); }
   /// The pixels of a cell; its right and lower edge may lie outside of the image.
   Rect cell(int index) const { return {index % columns_ * side_, index / columns_ * side_, side_, side_}; }
   /// Masks the cells for which is_masked(Rect) is true, and no others.

@@ -33,6 +33,15 @@ bool FeatureSearch::is_visible(int feature, Vec2* pixel) const {
   return is_in_image(settings_.camera, o.predicted, static_cast<Scalar>(settings_.border_px));
 }
 
+bool FeatureSearch::note_fixed(bool has_pose) {
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  const KnownScene scene = {{camera.q_WC, camera.p_W}, this, [](const void* self, int feature) {
+                              const FeatureSearch& of = *static_cast<const FeatureSearch*>(self);
+                              return of.filter_.point(of.map_.features[feature].slot);
+                            }};
+  return search_.note_fixed(filter_.lens(), has_pose ? &scene : nullptr, &frame_, &map_.features);
+}
+
 /// How reliable a feature is; negative where this view cannot be compared with its first.
 float FeatureSearch::rate(int feature, const Vec2& pixel) const {
   const Feature& f = map_.features[feature];

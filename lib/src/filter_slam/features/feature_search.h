@@ -52,11 +52,16 @@ class FeatureSearch {
   /// it. False where the prediction is not vague, or the image does not show its motion.
   bool find_followed(int count);
   /// After a frame's searches: ImageSearch::note_fixed.
-  bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_, &map_.features); }
+  bool note_fixed(bool has_pose);
+  /// At the end of a frame: by how much the map has moved.
+  void follow(const Similarity& T) { search_.fixed().follow(T); }
   /// Keeps the view of a frame that used matches, from which the next one may be followed.
   void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
   /// The map is discarded, and with it all poses.
-  void forget_view() { followed_.init(); }
+  void forget_view() {
+    followed_.init();
+    search_.fixed().forget_view();
+  }
 
   /// Stores the pixels around this pixel as the feature's appearance. False if the pixel is too near to the border.
   bool remember(int feature, const Vec2& pixel, const CameraView& view) {

@@ -28,6 +28,7 @@ void Frame::carry(Archive& archive, const FeatureTable& features) {
   carry_report(archive, report);
   archive.numbers(correction.T.q, correction.T.t, correction.T.s);
   archive.any(correction.from_map_id);
+  archive.within(masked, 0, 1000);
   archive.within(count_, 0, capacity_);
   for (int i = 0; i < count_; ++i) {
     auto& [feature, id, status, kind, searched, predicted, innovation, measured, nis] = match_[i];
@@ -64,12 +65,15 @@ void FitWarnings::carry(Archive& archive) { archive.flags(said_noise_, said_lens
 
 void FixedFeatures::carry(Archive& archive) {
   for (int i = 0; i < capacity_; ++i) {
-    auto& [id, u, v, evidence] = entry_[i];
+    auto& [id, u, v, evidence, rho, weight] = entry_[i];
     archive.any(id, u, v, evidence);
+    archive.numbers(rho, weight);
   }
   mask_.carry(archive);
+  archive.numbers(view_.q_WC, view_.c_W, prior_);
+  archive.flags(has_view_);
+  archive.any(last_young_);
   archive.counts(age_);
-  archive.numbers(prior_);
 }
 
 void ImageSearch::carry(Archive& archive) { fixed_.carry(archive); }

@@ -36,6 +36,14 @@ bool PointSearch::begin_frame(const ImageView* image) {
   return image == nullptr || images_.begin_frame(*image);
 }
 
+bool PointSearch::note_fixed(const CameraView& view) {
+  if (given_.are_given()) return false;
+  const KnownScene scene = {view, &map_,
+                            [](const void* map, int i) { return static_cast<const KeyframeMap*>(map)->position(i); }};
+  return images_.note_fixed(map_.camera(), frame_.report.inliers > 0 ? &scene : nullptr, &frame_,
+                            &map_.tables().features);
+}
+
 int PointSearch::list_placed(const PosePrior& at) {
   placed_ = 0;
   return placed_ = list(at, true, Scalar(1));

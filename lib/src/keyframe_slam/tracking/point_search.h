@@ -40,7 +40,7 @@ class PointSearch {
   int placed() const { return placed_; }
   /// Predicts points with a depth again, from a better pose.
   void predict_again(int first, int count, const PosePrior& at);
-  /// Of the first `found` points, which were found, keeps those of is_kept at the front, in their order; the others count as missed. Returns
+  /// Of the first `found` points, which were found, keeps those of is_kept at the front, in their order; the others are missed. Returns
   /// how many are kept.
   int forget_others(int found, const unsigned char* is_kept);
   /// Searches for a range of the list, and moves points that are found behind the first `found` ones, which were found before. Returns how
@@ -57,15 +57,18 @@ class PointSearch {
   /// the image does not show its motion.
   bool find_followed();
   /// After a frame's searches: ImageSearch::note_fixed.
-  bool note_fixed() {
-    return !given_.are_given() && images_.note_fixed(map_.camera(), frame_, &map_.tables().features);
-  }
+  bool note_fixed(const CameraView& view);
+  /// At the end of a frame: by how much the map has moved.
+  void follow(const Similarity& T) { images_.fixed().follow(T); }
   /// Keeps the view of a frame that supported its pose, from which the next one may be followed.
   void keep_view(const CameraView& view) {
     if (!given_.are_given()) followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W);
   }
   /// The map is discarded, and with it all poses.
-  void forget_view() { followed_.init(); }
+  void forget_view() {
+    followed_.init();
+    images_.fixed().forget_view();
+  }
 
   /// Updates masks and normals of templates with this frame's inliers.
   void learn_templates(const PosePrior& at);
