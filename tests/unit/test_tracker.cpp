@@ -1,4 +1,6 @@
 // Search for a feature in an image that is smeared.
+#include <cstdio>
+
 #include "support/test_cameras.h"
 #include "support/textured_images.h"
 #include "track/tracker.h"
@@ -69,8 +71,8 @@ void test_search_should_answer_at_a_coarse_level_when_the_image_is_smeared(void)
     squares +=
         dx * dx / static_cast<double>(outcome.noise(0, 0) + Scalar(0.0625) * outcome.level_scale * outcome.level_scale);
   }
-  printf("sharp %d, smeared %d (at a coarse level %d), mean square of the error in sigmas %.2f\n", sharp, smeared,
-         coarse, squares / smeared);
+  std::printf("sharp %d, smeared %d (at a coarse level %d), mean square of the error in sigmas %.2f\n", sharp, smeared,
+              coarse, squares / smeared);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(18, sharp);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(12, smeared);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(8, coarse);
