@@ -24,7 +24,7 @@ KILLS = int(os.environ.get("PLANEFOLD_KILLS", "6"))
 SEED = int(os.environ.get("PLANEFOLD_SEED", "1"))
 SOURCE = ["--source", "sim:desk", "--realtime", "--headless", "--quiet", "--start", "target", "--tracks", "--report-every", "0.5"]
 COLUMNS = {"trajectory.txt": (" ", 8), "trajectory_all.txt": (" ", 8), "truth.tum": (" ", 8), "covariance.csv": (",", 37),
-           "frames.csv": (",", 19), "tracks.csv": (",", 15), "planes.csv": (",", 10)}
+           "frames.csv": (",", 20), "tracks.csv": (",", 15), "planes.csv": (",", 10)}
 
 
 def require(condition, message):
