@@ -91,7 +91,7 @@ int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Ma
   else
     found_ = search_.search(0, 0, listed, about, Scalar(1));
   int inliers = pose_.find(found_, moving, pose, information);
-  if (is_wide && inliers > 0 && look_again(about, pose, information, &moving))
+  if (is_wide && inliers > 0 && search_.has_image() && look_again(about, pose, information, &moving))
     inliers = pose_.find(found_, moving, pose, information);
   *consensus = pose_.consensus(inliers, found_, about, *pose, *information);
   if (inliers > 0) pose_.weigh_lens(found_, *pose, consensus);

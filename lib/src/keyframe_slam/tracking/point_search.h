@@ -74,6 +74,8 @@ class PointSearch {
   void learn_templates(const PosePrior& at);
 
   const ImageSearch& images() const { return images_; }
+  /// False where the caller gives this frame's pixels, which no second search changes.
+  bool has_image() const { return !given_.are_given(); }
 
   void carry(Archive& archive);  ///< base/archive.h
 
