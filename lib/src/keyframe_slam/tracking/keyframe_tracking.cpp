@@ -131,7 +131,7 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
 }
 
 /// In a wide ellipse a texture that repeats hides its point. So what does not agree with the pose that the others give is searched for once
-/// more, in the small ellipse about that pose. False where nothing more is found.
+/// more, in the small ellipse about that pose. False where that has no covariance; nothing is searched for then.
 bool KeyframeTracking::look_again(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving) {
   PosePrior at = about;
   KeyframeMotion after = motion_;
