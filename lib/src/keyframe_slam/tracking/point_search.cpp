@@ -169,14 +169,11 @@ int PointSearch::search(int found, int first, int count, const PosePrior& at, Sc
   return found;
 }
 
-bool PointSearch::is_wide(const Mat2& innovation) const {
-  return FollowedView::is_wide(map_.camera(), innovation, settings_.gate);
-}
-
 bool PointSearch::find_followed() {
   if (given_.are_given()) return false;
   int wide = 0;
-  for (int t = 0; t < frame_.match_count(); ++t) wide += is_wide(frame_.match(t).innovation) ? 1 : 0;
+  for (int t = 0; t < frame_.match_count(); ++t)
+    wide += FollowedView::is_wide(map_.camera(), frame_.match(t).innovation, settings_.gate) ? 1 : 0;
   if (wide == 0 || tuning::image_front_end::kMinWide * wide < frame_.match_count()) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   return followed_.find(map_.camera(), images_.tracker().pyramid());
@@ -185,7 +182,7 @@ bool PointSearch::find_followed() {
 /// Directs a search to where the followed view has the point, unless its own ellipse is as small. False where the followed view has no
 /// place for it.
 bool PointSearch::aim(int i, SearchTask* task) const {
-  if (!is_wide(task->innovation)) return true;
+  if (!FollowedView::is_wide(map_.camera(), task->innovation, settings_.gate)) return true;
   const KeyframePoint& point = map_.point(i);
   Vec3 at_W = task->p_W;
   if (!point.has_depth) {

@@ -81,7 +81,6 @@ class PointSearch {
 
  private:
   int list(const PosePrior& at, bool placed, Scalar depth);
-  bool is_wide(const Mat2& innovation) const;
   bool aim(int i, SearchTask* task) const;
   bool find(int c, const PosePrior& at, Scalar depth);
   SearchTask task_of(int i, const PosePrior& at, Scalar depth) const;
