@@ -132,6 +132,22 @@ void test_things_that_move_before_a_resting_camera_should_mask_nothing() {
   TEST_ASSERT_EQUAL_INT(0, bench.scene_masked());
 }
 
+/// Along a near wall: what is far away hardly moves, and the frame's pose explains both.
+void test_what_is_far_away_should_not_be_masked_while_the_camera_translates() {
+  Bench bench;
+  for (int k = 0; k < 60; ++k) {
+    bench.frame.begin(bench.frame.report.t_ns + 33333333);
+    for (int i = 0; i < kScene; ++i) {
+      Vec2 pixel;
+      if (project(bench.camera, bench.ray_W[i] - Vec3(Scalar(0.005) * static_cast<Scalar>(k), 0, 0), &pixel))
+        bench.add(i, pixel, MatchStatus::kInlier);
+    }
+    for (int i = 0; i < kFixed; ++i) bench.add(kScene + i, bench.still[i], MatchStatus::kInlier);
+    TEST_ASSERT_FALSE(bench.fixed.note(bench.camera, bench.frame, &bench.features));
+  }
+  TEST_ASSERT_EQUAL_INT(0, bench.masked() + bench.scene_masked());
+}
+
 void test_what_the_caller_masks_should_be_masked_besides() {
   Bench bench;
   const Vec2 pixel(40, 40);
@@ -154,6 +170,7 @@ int main() {
   RUN_TEST(test_nothing_should_be_masked_while_the_camera_rests);
   RUN_TEST(test_what_is_fixed_should_be_known_before_the_camera_has_turned_by_two_degrees);
   RUN_TEST(test_things_that_move_before_a_resting_camera_should_mask_nothing);
+  RUN_TEST(test_what_is_far_away_should_not_be_masked_while_the_camera_translates);
   RUN_TEST(test_what_the_caller_masks_should_be_masked_besides);
   return UNITY_END();
 }

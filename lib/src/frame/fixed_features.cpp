@@ -135,7 +135,22 @@ void FixedFeatures::keep_reference(const Frame& frame) {
   }
 }
 
+/// Whether the pose of the frame explains what has moved: most of that are its inliers.
+bool FixedFeatures::is_explained(const Frame& frame) const {
+  int moved = 0, explained = 0;
+  for (int t = 0; t < frame.match_count(); ++t) {
+    Vec2 pixel;
+    const Match& match = frame.match(t);
+    if (!before(match, &pixel) || (match.measured - pixel).squaredNorm() < kMinFlow * kMinFlow) continue;
+    ++moved;
+    explained += match.status == MatchStatus::kInlier ? 1 : 0;
+  }
+  return kMinMoved * explained > moved;
+}
+
+/// What the frame's pose explains together with what has moved stands still because it is far away and the camera does not rotate.
 void FixedFeatures::weigh(const Camera& camera, const Quat& q_before_now, const Frame& frame) {
+  const bool is_scene = is_explained(frame);
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
     Vec2 pixel, flow;
@@ -143,7 +158,9 @@ void FixedFeatures::weigh(const Camera& camera, const Quat& q_before_now, const 
         flow.squaredNorm() < kMinFlow * kMinFlow / 4)
       continue;
     Entry& entry = entry_[match.feature];
-    const Scalar evidence = static_cast<Scalar>(entry.evidence) / kPerOdds + log_ratio(match.measured - pixel, flow);
+    Scalar ratio = log_ratio(match.measured - pixel, flow);
+    if (is_scene && match.status == MatchStatus::kInlier) ratio = std::min(ratio, Scalar(0));
+    const Scalar evidence = static_cast<Scalar>(entry.evidence) / kPerOdds + ratio;
     entry.evidence = static_cast<std::int16_t>(kPerOdds * std::clamp(evidence, -kMost, kMost));
   }
 }

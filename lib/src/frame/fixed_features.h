@@ -20,9 +20,10 @@ class Archive;
 ///
 ///   ln N(d; 0, kStill^2 I) - ln N(d; m, (kParallax |m|)^2 I),   bounded by +-kMaxStep
 ///
-/// to the evidence that it is fixed to the image; parallax may add to m or subtract from it. Its log-odds are this evidence plus those of
+/// to the evidence that it is fixed to the image; parallax may add to m or subtract from it. While the camera translates past what is near,
+/// the far stands still as what is fixed does: an inlier of the pose adds nothing where most of what has moved are inliers too. Its log-odds are this evidence plus those of
 /// the share of fixed features, which is estimated from the features' own probabilities, so that one among many is recognised soon. A point
-/// around which the camera moves stands still for a while, too, but a hand does not hold it to half a pixel. No pose is needed.
+/// around which the camera moves stands still for a while, too, but a hand does not hold it to half a pixel. No pose is needed where there is none.
 ///
 /// src  sequential test of two hypotheses (Wald 1947); share as in expectation maximisation (Dempster 1977)
 class FixedFeatures {
@@ -55,6 +56,7 @@ class FixedFeatures {
   bool before(const Match& match, Vec2* pixel) const;
   bool find_turn(const Camera& camera, const Frame& frame, Quat* q_before_now) const;
   void keep_reference(const Frame& frame);
+  bool is_explained(const Frame& frame) const;
   void weigh(const Camera& camera, const Quat& q_before_now, const Frame& frame);
   void estimate_share();
   int mask_fixed(const Frame& frame, FeatureTable* features);
