@@ -148,7 +148,8 @@ bool FixedFeatures::is_explained(const Frame& frame) const {
   return kMinMoved * explained > moved;
 }
 
-/// What the frame's pose explains together with what has moved stands still because it is far away and the camera does not rotate.
+/// A point whose place is known, and which the frame's pose explains together with what has moved, stands still because it is far away and
+/// the camera does not rotate. One whose depth is open would follow what is fixed.
 void FixedFeatures::weigh(const Camera& camera, const Quat& q_before_now, const Frame& frame) {
   const bool is_scene = is_explained(frame);
   for (int t = 0; t < frame.match_count(); ++t) {
@@ -159,7 +160,8 @@ void FixedFeatures::weigh(const Camera& camera, const Quat& q_before_now, const 
       continue;
     Entry& entry = entry_[match.feature];
     Scalar ratio = log_ratio(match.measured - pixel, flow);
-    if (is_scene && match.status == MatchStatus::kInlier) ratio = std::min(ratio, Scalar(0));
+    if (is_scene && match.status == MatchStatus::kInlier && match.kind == BlockKind::kPoint)
+      ratio = std::min(ratio, Scalar(0));
     const Scalar evidence = static_cast<Scalar>(entry.evidence) / kPerOdds + ratio;
     entry.evidence = static_cast<std::int16_t>(kPerOdds * std::clamp(evidence, -kMost, kMost));
   }
