@@ -58,6 +58,8 @@ void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   map_.keyframes[keyframe].w_C = motion_.body().w_C;
   if (young) triangulate_inliers(young);
   adjust();
+  chain_.add(adjustment_.drift(), motion_.body().p_W);
+  map_.keyframes[keyframe].drift = chain_.sum();
   const CameraView now = motion_.view();
   frame_.correction.add(Similarity::between(before.q_WC, before.c_W, now.q_WC, now.c_W));
   if (map_.keyframes.began_elsewhere()) keeper_.bring_near(motion_.view(), median_depth, 1);

@@ -2,6 +2,7 @@
 
 #include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
+#include "keyframe_slam/memory/drift_chain.h"
 #include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/planes/plane_upkeep.h"
 #include "keyframe_slam/start/keyframe_record.h"
@@ -41,6 +42,7 @@ class KeyframeMapping {
   void init() {
     planes_.init();
     adjustment_.init();
+    chain_.init();
     saving_.init();
   }
 
@@ -53,6 +55,7 @@ class KeyframeMapping {
 
   KeyframeAdjustment& adjustment() { return adjustment_; }
   const KeyframeAdjustment& adjustment() const { return adjustment_; }
+  DriftChain& chain() { return chain_; }
   MapSaving& saving() { return saving_; }
   const MapSaving& saving() const { return saving_; }
 
@@ -76,6 +79,7 @@ class KeyframeMapping {
   KeyframeRecord& record_;
   PlaceKeeper& keeper_;
   KeyframeAdjustment adjustment_;
+  DriftChain chain_;
   MapSaving saving_;
 };
 

@@ -34,6 +34,7 @@ bool KeyframeSlam::layout(Arena& arena) {
   placement_.layout(arena);
   unit_.layout(arena);
   relocaliser_.layout(arena);
+  loops_.layout(arena);
   record_.layout(arena);
   return start_.layout(arena);
 }
@@ -51,6 +52,7 @@ void KeyframeSlam::init() {
   placement_.init();
   unit_.init();
   relocaliser_.init();
+  loops_.init();
   record_.init();
   start_.init();
   data_ = Data();
@@ -180,7 +182,11 @@ void KeyframeSlam::learn() {
   if (!tracked || is_keyframe || record_.progress().pending() || !data_.has_image) return;
   relocaliser_.note_view(data_.median_depth);
   const MapJoin join = relocaliser_.take_join();
-  if (join.map_id != 0) placement_.join(join, &data_.median_depth);
+  if (join.map_id != 0) return placement_.join(join, &data_.median_depth);
+  if (settings_.inertial || map_.tables().planes.has_known()) return;
+  relocaliser_.keeper().follow_keyframes();
+  const LoopClosure loop = loops_.look(motion_, data_.median_depth, mapping_.chain());
+  if (loop.place != 0) placement_.close_loop(loop, &data_.median_depth);
 }
 
 /// Returns the status of the frame.

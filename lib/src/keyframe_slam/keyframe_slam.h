@@ -12,6 +12,7 @@
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
+#include "keyframe_slam/tracking/loop_finder.h"
 #include "keyframe_slam/tracking/relocaliser.h"
 
 /// The order of work of one frame with the window as back end (Masoud and Hoff 2015, Figure 4), and nothing else:
@@ -97,13 +98,14 @@ class KeyframeSlam {
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
   KeyframeRelocaliser relocaliser_{settings_,         map_, motion_, search_.images().tracker(), measuring_,
                                    tracking_.belief()};
+  LoopFinder loops_{settings_, map_, noise_, search_.images(), tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
   KeyframeMapping mapping_;
   KeyframeStart start_{
       settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
       mapping_.saving(), record_, data_.second};
-  MapPlacement placement_{settings_, map_,         frame_,  tracking_, motion_, planes_,     anchors_,
-                          mapping_,  relocaliser_, record_, start_,    unit_,   data_.second};
+  MapPlacement placement_{settings_, map_,         frame_,  tracking_, motion_, planes_,      anchors_,
+                          mapping_,  relocaliser_, record_, start_,    unit_,   data_.second, loops_};
 };
 
 }  // namespace pf

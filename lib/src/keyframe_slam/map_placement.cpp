@@ -7,6 +7,7 @@
 #include "keyframe_slam/adjustment/move_window.h"
 #include "keyframe_slam/start/tuning.h"
 #include "keyframe_slam/tracking/tuning.h"
+#include "memory/tuning.h"
 
 namespace pf {
 
@@ -147,10 +148,30 @@ void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
                       fixed(join.T.s, 3));
 }
 
+void MapPlacement::close_loop(const LoopClosure& loop, Scalar* median_depth) {
+  const Similarity T = similarity_of(loop.x, loop.at_W);
+  Mat6 covariance;
+  if (!return_.close(loop, &mapping_.chain(), &covariance)) return;
+  record_.init();
+  motion_.move(T);
+  frame_.correction.add(T);
+  mapping_.adjustment().move(T);
+  mapping_.adjustment().begin_at(covariance);
+  relocaliser_.move_each(T, [&](const Quat& q_WC, const Vec3& p_W) { return return_.near(q_WC, p_W, *median_depth); });
+  *median_depth *= T.s;
+  if (relocaliser_.keeper().bring_back(loop.place)) relocaliser_.keeper().bring_points(loop.place);
+  relocaliser_.keeper().bring_near(motion_.view(), *median_depth, tuning::place::kMaxReturns);
+  settings_.hooks.say("map ", tracking_.map_id(), " comes back to place ", static_cast<int>(loop.place), ": moved by ",
+                      fixed((T.of(loop.at_W) - loop.at_W).norm(), 3), " and ", degrees(log_so3(T.q).norm()),
+                      " deg, scaled by ", fixed(T.s, 3));
+}
+
 void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
   move_window(T, &map_, &planes_, &motion_);
   frame_.correction.add(T);
   mapping_.adjustment().move(T);
+  mapping_.chain().move(T);
+  loops_.forget();
   map_.tables().anchors.move(tracking_.map_id(), tracking_.map_id(), T);
   relocaliser_.move(T);
   unit_.move(T);

@@ -3,6 +3,7 @@
 #include "keyframe_slam/inertial/keyframe_unit.h"
 #include "keyframe_slam/keyframe_mapping.h"
 #include "keyframe_slam/memory/keyframe_anchors.h"
+#include "keyframe_slam/memory/loop_return.h"
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/walls/keyframe_walls.h"
 
@@ -28,7 +29,7 @@ class MapPlacement {
   MapPlacement(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
                KeyframeMotion& motion, KeyframePlanes& planes, KeyframeAnchors& anchors, KeyframeMapping& mapping,
                KeyframeRelocaliser& relocaliser, KeyframeRecord& record, KeyframeStart& start, KeyframeUnit& unit,
-               SecondPose& second)
+               SecondPose& second, LoopFinder& loops)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -41,9 +42,14 @@ class MapPlacement {
         record_(record),
         start_(start),
         unit_(unit),
-        second_(second) {}
+        second_(second),
+        loops_(loops),
+        return_{map, planes} {}
 
-  bool layout(Arena& arena) { return walls_.layout(arena); }
+  bool layout(Arena& arena) {
+    return_.layout(arena, settings_);
+    return walls_.layout(arena);
+  }
   void init() {
     walls_.init();
     mark_ = MarkedPose();
@@ -72,6 +78,8 @@ class MapPlacement {
   MapOfUnit map_of_unit(Scalar median_depth) const;
   /// The map is joined to an earlier one: it goes on in that one's W and unit, under its id.
   void join(const MapJoin& join, Scalar* median_depth);
+  /// The camera is back at a place: the window goes to where that has it, and what was made in between by its share.
+  void close_loop(const LoopClosure& loop, Scalar* median_depth);
   /// The map has begun again with other poses, of which the newest keyframe has this frame's: anchors stay where they are before it.
   void keep_anchors(const CameraView& before, const CameraView& now) {
     anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
@@ -109,6 +117,8 @@ class MapPlacement {
   KeyframeStart& start_;
   KeyframeUnit& unit_;
   SecondPose& second_;
+  LoopFinder& loops_;
+  LoopReturn return_;
   KeyframeWalls walls_{settings_, map_, frame_, planes_};
   MarkedPose mark_;
 };

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/eigen.h"
+#include "geometry/similarity_error.h"
 #include "vision/appearance.h"
 #include "vision/descriptor.h"
 
@@ -48,6 +49,8 @@ struct KeptPlace {
   Quat q_WK = Quat::Identity();
   Vec3 p_WK = Vec3::Zero();
   Mat6 covariance = Mat6::Zero();  ///< of (theta, p) in W
+  SimilarityCovariance drift =
+      SimilarityCovariance::Zero();  ///< of the chain of keyframes that led here (drift_chain.h)
   PlacePoint point[kMaxPoints];
 
   Vec3 position_W(int i) const { return p_WK + q_WK * point[i].position_K(); }
@@ -64,6 +67,9 @@ Scalar median_depth(const KeptPlace& place);
 /// Copies the middle of a patch, and back. What comes back has no second level.
 void crop_patch(const SourcePatch& from, PlacePatch* to);
 void restore_patch(const PlacePatch& from, SourcePatch* to);
+
+/// The view that the patch of a point is from.
+CameraView first_view_of(const KeptPlace& place, const PlacePoint& point);
 
 /// How far apart two views are, squared; 1 where they share about half of what they see:
 ///

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "bundle/bundle.h"
+#include "geometry/similarity_error.h"
 #include "vision/appearance.h"
 
 /// Table of keyframes: poses whose images the map was measured in, with the pixels of its points.
@@ -25,6 +26,7 @@ struct Keyframe {
   Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
   Scalar row_depth = 0;
   bool matches_by_motion = false;
+  SimilarityCovariance drift = SimilarityCovariance::Zero();  ///< of the chain when it was the newest (drift_chain.h)
 
   CameraView view() const { return {q_WC, p_W}; }
 };

@@ -53,6 +53,7 @@ bool make_place(const KeyframeMap& map, int keyframe, const bool* taken, KeptPla
   out->q_WK = k.q_WC;
   out->p_WK = k.p_W;
   out->covariance = k.covariance;
+  out->drift = k.drift;
   for (const bool second : {false, true})
     for (const int i : used_entries(map)) {
       if (second && out->count >= kMinPoints) break;
@@ -114,9 +115,28 @@ bool PlaceKeeper::bring_back(std::uint32_t id) {
   if (at < 0) return false;
   const KeptPlace& place = map_.places[at];
   const int k = map_.keyframes.add_again(static_cast<int>(id), place.q_WK, place.p_WK, place.covariance);
+  map_.keyframes[k].drift = place.drift;
   map_.places.note_return(at);
-  for (int i = 0; i < place.count; ++i) bring_point(place, place.point[i], k);
+  bring_points(id);
   return true;
+}
+
+void PlaceKeeper::follow_keyframes() {
+  for (const int k : used_entries(map_.keyframes)) {
+    const int at = map_.places.entry_of(static_cast<std::uint32_t>(map_.keyframes[k].number));
+    if (at < 0) continue;
+    map_.places[at].q_WK = map_.keyframes[k].q_WC;
+    map_.places[at].p_WK = map_.keyframes[k].p_W;
+  }
+}
+
+void PlaceKeeper::bring_points(std::uint32_t id) {
+  const int at = map_.places.entry_of(id);
+  int k = 0;
+  while (k < map_.keyframes.capacity() && map_.keyframes[k].number != static_cast<int>(id)) ++k;
+  if (at < 0 || k == map_.keyframes.capacity()) return;
+  const KeptPlace& place = map_.places[at];
+  for (int i = 0; i < place.count; ++i) bring_point(place, place.point[i], k);
 }
 
 void PlaceKeeper::bring_near(const CameraView& view, Scalar depth, int most) {
