@@ -2,6 +2,7 @@
 
 #include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
+#include "keyframe_slam/map/tuning.h"
 #include "keyframe_slam/memory/drift_chain.h"
 #include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/planes/plane_upkeep.h"
@@ -37,6 +38,8 @@ class KeyframeMapping {
 
   bool layout(Arena& arena) {
     saving_.layout(arena);
+    const int places = static_cast<int>(settings_.kept.places);
+    chain_.layout(arena, places > 0 ? places + tuning::keyframe_map::kKeyframes : 0);
     return adjustment_.layout(arena);
   }
   void init() {
@@ -65,6 +68,7 @@ class KeyframeMapping {
   void triangulate_inliers(bool young);
   bool wants_keyframe(bool young, Scalar median_depth) const;
   void add_frame(bool young, Scalar median_depth);
+  void add_to_chain(int newest);
   void add_points(bool pending, Scalar median_depth);
 
   const Settings& settings_;

@@ -222,6 +222,7 @@ void KeyframeSlam::discard_map() {
   start_.start_over();
   motion_.init();
   relocaliser_.init();
+  loops_.init();
   search_.forget_view();
   mapping_.init();
   placement_.init();

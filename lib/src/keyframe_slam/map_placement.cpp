@@ -151,17 +151,19 @@ void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
 void MapPlacement::close_loop(const LoopClosure& loop, Scalar* median_depth) {
   const Similarity T = similarity_of(loop.x, loop.at_W);
   Mat6 covariance;
-  if (!return_.close(loop, &mapping_.chain(), &covariance)) return;
+  if (!return_.close(loop, relocaliser_.keeper().taken(), &mapping_.chain(), &covariance)) return;
   record_.init();
   motion_.move(T);
   frame_.correction.add(T);
   mapping_.adjustment().move(T);
   mapping_.adjustment().begin_at(covariance);
   relocaliser_.move_each(T, [&](const Quat& q_WC, const Vec3& p_W) { return return_.near(q_WC, p_W, *median_depth); });
+  move_mark(return_.near(mark_.q_WC, mark_.p_W, *median_depth));
   *median_depth *= T.s;
-  if (relocaliser_.keeper().bring_back(loop.place)) relocaliser_.keeper().bring_points(loop.place);
+  const auto place = static_cast<std::uint32_t>(loop.place);
+  if (relocaliser_.keeper().bring_back(place)) relocaliser_.keeper().bring_points(place);
   relocaliser_.keeper().bring_near(motion_.view(), *median_depth, tuning::place::kMaxReturns);
-  settings_.hooks.say("map ", tracking_.map_id(), " comes back to place ", static_cast<int>(loop.place), ": moved by ",
+  settings_.hooks.say("map ", tracking_.map_id(), " comes back to place ", loop.place, ": moved by ",
                       fixed((T.of(loop.at_W) - loop.at_W).norm(), 3), " and ", degrees(log_so3(T.q).norm()),
                       " deg, scaled by ", fixed(T.s, 3));
 }
@@ -176,6 +178,10 @@ void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
   relocaliser_.move(T);
   unit_.move(T);
   *median_depth *= T.s;
+  move_mark(T);
+}
+
+void MapPlacement::move_mark(const Similarity& T) {
   mark_.q_WC = (T.q * mark_.q_WC).normalized();
   mark_.p_W = T.of(mark_.p_W);
   mark_.covariance = T.of_pose_covariance(mark_.covariance);

@@ -5,6 +5,7 @@
 #include "keyframe_slam/memory/keyframe_anchors.h"
 #include "keyframe_slam/memory/loop_return.h"
 #include "keyframe_slam/start/keyframe_start.h"
+#include "keyframe_slam/tracking/loop_finder.h"
 #include "keyframe_slam/walls/keyframe_walls.h"
 
 /// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, walls, or
@@ -44,10 +45,10 @@ class MapPlacement {
         unit_(unit),
         second_(second),
         loops_(loops),
-        return_{map, planes} {}
+        return_{settings, map, planes} {}
 
   bool layout(Arena& arena) {
-    return_.layout(arena, settings_);
+    return_.layout(arena);
     return walls_.layout(arena);
   }
   void init() {
@@ -103,6 +104,7 @@ class MapPlacement {
  private:
   void move(const Similarity& T, Scalar* median_depth);
   void rename_map();
+  void move_mark(const Similarity& T);
 
   const Settings& settings_;
   KeyframeMap& map_;

@@ -25,13 +25,13 @@ void carry_point(Archive& archive, PlacePoint& point) {
 void PlaceTable::carry(Archive& archive) {
   archive.counts(returned_);
   for (int i = 0; i < capacity_; ++i) {
-    auto& [id, map_id, is_back, count, depth, q_WK, p_WK, covariance, drift, point] = place_[i];
+    auto& [id, map_id, is_back, count, depth, q_WK, p_WK, covariance, point] = place_[i];
     archive.within(id, 0, INT32_MAX);
     if (id == 0) continue;
     archive.any(map_id);
     archive.flags(is_back);
     archive.within(count, 0, KeptPlace::kMaxPoints);
-    archive.numbers(depth, q_WK, p_WK, covariance, drift);
+    archive.numbers(depth, q_WK, p_WK, covariance);
     for (int k = 0; k < count; ++k) carry_point(archive, point[k]);
   }
 }

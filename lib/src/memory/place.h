@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "base/eigen.h"
-#include "geometry/similarity_error.h"
 #include "vision/appearance.h"
 #include "vision/descriptor.h"
 
@@ -49,8 +48,6 @@ struct KeptPlace {
   Quat q_WK = Quat::Identity();
   Vec3 p_WK = Vec3::Zero();
   Mat6 covariance = Mat6::Zero();  ///< of (theta, p) in W
-  SimilarityCovariance drift =
-      SimilarityCovariance::Zero();  ///< of the chain of keyframes that led here (drift_chain.h)
   PlacePoint point[kMaxPoints];
 
   Vec3 position_W(int i) const { return p_WK + q_WK * point[i].position_K(); }

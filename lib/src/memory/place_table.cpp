@@ -53,9 +53,7 @@ int PlaceTable::keep(const KeptPlace& place) {
 
 void PlaceTable::move(const Similarity& T) {
   for (const int i : used_entries(*this)) {
-    if (!is_present(i)) continue;
-    move(T, &place_[i]);
-    place_[i].drift = moved_covariance(T, place_[i].drift);
+    if (is_present(i)) move(T, &place_[i]);
   }
 }
 

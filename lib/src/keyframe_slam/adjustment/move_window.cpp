@@ -25,10 +25,7 @@ void move_keyframe(const Similarity& T, int k, KeyframeMap* map) {
 }
 
 void move_window(const Similarity& T, KeyframeMap* map, KeyframePlanes* planes, KeyframeMotion* motion) {
-  for (const int k : used_entries(map->keyframes)) {
-    move_keyframe(T, k, map);
-    map->keyframes[k].drift = moved_covariance(T, map->keyframes[k].drift);
-  }
+  for (const int k : used_entries(map->keyframes)) move_keyframe(T, k, map);
   map->tables().target_normal_W = T.q * map->tables().target_normal_W;
   map->places.move(T);
   planes->move(T);

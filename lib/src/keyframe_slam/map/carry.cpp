@@ -20,12 +20,12 @@ void KeyframeTable::carry(Archive& archive, const FeatureTable& features) {
   archive.within(newest_, -1, capacity_ - 1);
   int count = 0;
   for (int k = 0; k < capacity_; ++k) {
-    auto& [number, t_ns, q_WC, p_W, covariance, v_W, w_C, row_depth, matches_by_motion, drift] = keyframe_[k];
+    auto& [number, t_ns, q_WC, p_W, covariance, v_W, w_C, row_depth, matches_by_motion] = keyframe_[k];
     archive.within(number, 0, last_number_);
     if (number == 0) continue;
     ++count;
     archive.any(t_ns);
-    archive.numbers(q_WC, p_W, covariance, v_W, w_C, row_depth, drift);
+    archive.numbers(q_WC, p_W, covariance, v_W, w_C, row_depth);
     archive.flags(matches_by_motion);
     for (int i = 0; i < points_; ++i) {
       if (archive.is_reading()) pixels(k)[i] = {0, 0, false};

@@ -4,7 +4,6 @@
 
 #include "base/arena.h"
 #include "bundle/bundle.h"
-#include "geometry/similarity_error.h"
 #include "vision/appearance.h"
 
 /// Table of keyframes: poses whose images the map was measured in, with the pixels of its points.
@@ -26,7 +25,6 @@ struct Keyframe {
   Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
   Scalar row_depth = 0;
   bool matches_by_motion = false;
-  SimilarityCovariance drift = SimilarityCovariance::Zero();  ///< of the chain when it was the newest (drift_chain.h)
 
   CameraView view() const { return {q_WC, p_W}; }
 };
@@ -66,6 +64,12 @@ class KeyframeTable {
   /// Entry of the newest one, or -1.
   int newest() const { return newest_; }
   bool used(int k) const { return keyframe_[k].number > 0; }
+  /// Entry of the one with this number, or -1.
+  int entry_of(int number) const {
+    for (int k = 0; k < capacity_; ++k)
+      if (used(k) && keyframe_[k].number == number) return k;
+    return -1;
+  }
   Keyframe& operator[](int k) { return keyframe_[k]; }
   const Keyframe& operator[](int k) const { return keyframe_[k]; }
 

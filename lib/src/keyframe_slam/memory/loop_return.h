@@ -1,7 +1,7 @@
 #pragma once
 
+#include "keyframe_slam/memory/drift_chain.h"
 #include "keyframe_slam/planes/planes.h"
-#include "keyframe_slam/tracking/loop_finder.h"
 
 /// Moves the parts of the map when its camera is back at a place (lib/docs/theory/places.md).
 
@@ -9,16 +9,16 @@ namespace pf {
 
 class LoopReturn {
  public:
-  LoopReturn(KeyframeMap& map, KeyframePlanes& planes) : map_(map), planes_(planes) {}
+  LoopReturn(const Settings& settings, KeyframeMap& map, KeyframePlanes& planes)
+      : settings_(settings), map_(map), planes_(planes) {}
 
-  bool layout(Arena& arena, const Settings& settings);
+  bool layout(Arena& arena);
 
-  /// Moves the newest keyframe by x, what was made since the camera was at that place by its share of x, and leaves what is older:
-  ///
-  ///   x_i = C_i C⁻¹ x,   C_i+ = C_i - C_i C⁻¹ (C - C+) C⁻¹ C_i       C_i, C: drift of the part, and of the newest keyframe, since the place
-  ///
-  /// covariance: of the camera's (theta, p) in W then. False: nothing has moved.
-  bool close(const LoopClosure& loop, DriftChain* chain, Mat6* covariance);
+  /// Keyframes that are connected with the newest one, and were made since the camera was at the place, move with it, by x: what they share
+  /// tells better than the chain how they lie to each other. Other keyframes and places move by their share of x, and planes with the points
+  /// that lie on them. Places that have come back before stay. covariance: of the camera's (theta, p) in W then. seen: room for a mark on
+  /// each point of the window. False: nothing has moved.
+  bool close(const LoopClosure& loop, bool* seen, DriftChain* chain, Mat6* covariance);
   /// How close() has moved what is nearest to a view.
   Similarity near(const Quat& q_WC, const Vec3& p_W, Scalar depth) const;
 
@@ -30,10 +30,13 @@ class LoopReturn {
     Similarity T;
   };
 
-  bool is_in_view(int plane, int left_at) const;
+  void choose_whole(int place, bool* seen);
+  bool is_plane_of_whole(int plane) const;
 
+  const Settings& settings_;
   KeyframeMap& map_;
   KeyframePlanes& planes_;
+  bool* is_whole_ = nullptr;  ///< of each keyframe: whether it moves with the newest one
   Part* part_ = nullptr;
   int parts_ = 0;
 };

@@ -53,7 +53,6 @@ bool make_place(const KeyframeMap& map, int keyframe, const bool* taken, KeptPla
   out->q_WK = k.q_WC;
   out->p_WK = k.p_W;
   out->covariance = k.covariance;
-  out->drift = k.drift;
   for (const bool second : {false, true})
     for (const int i : used_entries(map)) {
       if (second && out->count >= kMinPoints) break;
@@ -104,8 +103,7 @@ void PlaceKeeper::update(const KeptPlace& now, KeptPlace* kept) const {
 }
 
 bool PlaceKeeper::bring_back(std::uint32_t id) {
-  for (const int k : used_entries(map_.keyframes))
-    if (map_.keyframes[k].number == static_cast<int>(id)) return true;
+  if (map_.keyframes.entry_of(static_cast<int>(id)) >= 0) return true;
   const int leaving = leaving_keyframe(map_, settings_.window_keyframes);
   if (leaving >= 0) {
     keep(leaving);
@@ -114,8 +112,7 @@ bool PlaceKeeper::bring_back(std::uint32_t id) {
   const int at = map_.places.entry_of(id);
   if (at < 0) return false;
   const KeptPlace& place = map_.places[at];
-  const int k = map_.keyframes.add_again(static_cast<int>(id), place.q_WK, place.p_WK, place.covariance);
-  map_.keyframes[k].drift = place.drift;
+  map_.keyframes.add_again(static_cast<int>(id), place.q_WK, place.p_WK, place.covariance);
   map_.places.note_return(at);
   bring_points(id);
   return true;
@@ -131,10 +128,8 @@ void PlaceKeeper::follow_keyframes() {
 }
 
 void PlaceKeeper::bring_points(std::uint32_t id) {
-  const int at = map_.places.entry_of(id);
-  int k = 0;
-  while (k < map_.keyframes.capacity() && map_.keyframes[k].number != static_cast<int>(id)) ++k;
-  if (at < 0 || k == map_.keyframes.capacity()) return;
+  const int at = map_.places.entry_of(id), k = map_.keyframes.entry_of(static_cast<int>(id));
+  if (at < 0 || k < 0) return;
   const KeptPlace& place = map_.places[at];
   for (int i = 0; i < place.count; ++i) bring_point(place, place.point[i], k);
 }

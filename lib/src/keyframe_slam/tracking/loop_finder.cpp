@@ -12,7 +12,6 @@
 namespace pf {
 namespace {
 
-using SixBySeven = Eigen::Matrix<double, 6, 7>;
 using SevenBySix = Eigen::Matrix<double, 7, 6>;
 
 Scalar trace3(const SimilarityCovariance& C, int first) {
@@ -48,7 +47,9 @@ LoopFinder::Near LoopFinder::find_near(const CameraView& view, Scalar depth, con
     const KeptPlace& place = map_.places[p];
     if (!map_.places.is_present(p)) continue;
     const int number = static_cast<int>(place.id);
-    const SimilarityCovariance Q = similarity_covariance_at(view.c_W, chain.between(number, place.drift, chain.sum()));
+    const SimilarityCovariance* sum = chain.sum_of(number);
+    if (sum == nullptr) continue;
+    const SimilarityCovariance Q = similarity_covariance_at(view.c_W, chain.between(number, *sum, chain.sum()));
     const Scalar far = kFarShift * std::min(depth, place.depth);
     const Vec3 z_a = view.q_WC * Vec3::UnitZ(), z_b = place.q_WK * Vec3::UnitZ();
     const Scalar d2 = (view.c_W - place.p_WK).squaredNorm() / (far * far + trace3(Q, 3)) +
@@ -79,30 +80,39 @@ Scalar LoopFinder::log_drift(const CameraView& view, const Vec6& u, const Mat6& 
   return log_normal(u, P) - most - std::log((std::exp(a - most) + std::exp(b - most)) / 2);
 }
 
+bool LoopFinder::is_asked(const CameraView& view, Scalar depth) const {
+  return data_->asked_depth > Scalar(0) &&
+         view_distance2(view.q_WC, view.c_W, depth, data_->asked.q_WC, data_->asked.c_W, data_->asked_depth) <
+             tuning::place::kApart * tuning::place::kApart;
+}
+
+LoopClosure LoopFinder::look(const KeyframeMotion& motion, Scalar depth, const DriftChain& chain) {
+  const CameraView view = motion.view();
+  if (data_ == nullptr || map_.keyframes.began_elsewhere() || is_asked(view, depth)) return LoopClosure();
+  const Near near = find_near(view, depth, chain);
+  if (near.count == 0) return LoopClosure();
+  data_->asked = view;
+  data_->asked_depth = depth;
+  if (data_->breaks != chain.breaks()) data_->views = 0;
+  return compare(motion, near, chain);
+}
+
 /// The pose u of the camera against the places is that of the window's drift x about the camera, u = H x, beside what the camera may be off
 /// in the window. With P its covariance before the image and S after it,
 ///
 ///   x+ = x + G (u+ - u),   C+ = C + G (S - P) Gᵀ,   G = C Hᵀ P⁻¹
-LoopClosure LoopFinder::look(const KeyframeMotion& motion, Scalar depth, const DriftChain& chain) {
+LoopClosure LoopFinder::compare(const KeyframeMotion& motion, const Near& near, const DriftChain& chain) {
   LoopClosure out;
   const CameraView view = motion.view();
-  if (settings_.kept.places == 0 || map_.keyframes.began_elsewhere()) return out;
-  const bool is_asked = data_.asked_depth > Scalar(0) &&
-                        view_distance2(view.q_WC, view.c_W, depth, data_.asked.q_WC, data_.asked.c_W,
-                                       data_.asked_depth) < tuning::place::kApart * tuning::place::kApart;
-  if (is_asked) return out;
-  const Near near = find_near(view, depth, chain);
-  if (near.count == 0) return out;
-  data_.asked = view;
-  data_.asked_depth = depth;
-  const KeptPlace& nearest = map_.places[near.place[0]];
+  const int number = static_cast<int>(map_.places[near.place[0]].id);
   const SimilarityCovariance prior =
-      similarity_covariance_at(view.c_W, chain.between(static_cast<int>(nearest.id), nearest.drift, chain.sum()));
+      similarity_covariance_at(view.c_W, chain.between(number, *chain.sum_of(number), chain.sum()));
+  const bool is_first = data_->views == 0;
   SimilarityError x = SimilarityError::Zero();
   SimilarityCovariance C = prior;
-  if (data_.views > 0) {
-    x = similarity_error_at(view.c_W) * data_.x;
-    C = similarity_covariance_at(view.c_W, data_.C + chain.sum() - data_.sum);
+  if (!is_first) {
+    x = similarity_error_at(view.c_W) * data_->x;
+    C = similarity_covariance_at(view.c_W, data_->C + chain.sum() - data_->sum);
   }
   const Vec6 u = x.head<6>().cast<Scalar>();
   PosePrior about;
@@ -111,51 +121,47 @@ LoopClosure LoopFinder::look(const KeyframeMotion& motion, Scalar depth, const D
   about.covariance = motion.pose_covariance() + C.topLeftCorner<6, 6>().cast<Scalar>();
   about.v_W = motion.body().v_W;
   about.w_C = motion.body().w_C;
-  SmallCholesky<6> factored;
-  if (!factored.factor(about.covariance)) return out;
+  SmallCholesky<6> before, after;
+  if (!before.factor(about.covariance)) return out;
   const PlaceSighting seen = places_.measure(near.place, near.count, about, belief_);
-  if (seen.consensus.searched < settings_.min_inliers) return out;
-  const FindShare& share = belief_.share();
   const int n = seen.consensus.searched, k = seen.consensus.inliers;
-  const Scalar before = data_.views > 0 ? data_.log_odds : PoseBelief::anew();
-  data_.log_odds = PoseBelief::updated(before, evidence_against_chance(seen.consensus, share));
-  data_.alike = (data_.views > 0 ? data_.alike : Scalar(0)) + share.log_probability(n, k) - log_any_share(n, k);
-  if (k == 0) {
-    if (data_.log_odds <= PoseBelief::anew()) data_.views = 0;
+  if (n < settings_.min_inliers) return out;
+  const FindShare& share = belief_.share();
+  data_->log_odds = PoseBelief::updated(is_first ? PoseBelief::anew() : data_->log_odds,
+                                        evidence_against_chance(seen.consensus, share));
+  data_->alike = (is_first ? Scalar(0) : data_->alike) + share.log_probability(n, k) - log_any_share(n, k);
+  const Mat6 P_inverse = before.inverse();
+  if (k == 0 || !after.factor(Mat6(seen.information + P_inverse))) {
+    if (data_->log_odds <= PoseBelief::anew()) data_->views = 0;
     return out;
   }
-  SmallCholesky<6> posterior;
-  if (!posterior.factor(Mat6(seen.information + factored.inverse()))) return out;
+  const Mat6 S = after.inverse();
   Vec6 now;
   now << log_so3(seen.pose.q_WC * view.q_WC.conjugate()), seen.pose.p_WC - view.c_W;
-  const Mat6 P_inverse = factored.inverse();
   const SevenBySix G = C.leftCols<6>() * P_inverse.cast<double>();
-  const Eigen::Matrix<double, 6, 6> shrunk = (posterior.inverse() - about.covariance).cast<double>();
   x += G.lazyProduct((now - u).cast<double>());
-  C += G.lazyProduct(shrunk).lazyProduct(G.transpose());
+  C += G.lazyProduct((S - about.covariance).cast<double>()).lazyProduct(G.transpose());
   C = (C + C.transpose().eval()) / 2;
-  data_.x = similarity_error_at(-view.c_W) * x;
-  data_.C = similarity_covariance_at(-view.c_W, C);
-  data_.sum = chain.sum();
-  data_.place = nearest.id;
-  ++data_.views;
-  const Mat6 P_drift = prior.topLeftCorner<6, 6>().cast<Scalar>() + posterior.inverse() + motion.pose_covariance();
-  const Scalar against_alike = belief_.most_elsewhere() + data_.alike + log_drift(view, now, P_drift);
-  const Scalar least = std::min(against_alike, data_.log_odds), most = std::max(against_alike, data_.log_odds);
-  const Scalar log_odds = least - std::log(1 + std::exp(least - most));
-  if (data_.views < 2 || !PoseBelief::is_enough(log_odds)) return out;
-  out = {nearest.id, view.c_W, x, prior, C, log_odds};
-  data_.views = 0;
-  return out;
+  data_->x = similarity_error_at(-view.c_W) * x;
+  data_->C = similarity_covariance_at(-view.c_W, C);
+  data_->sum = chain.sum();
+  data_->breaks = chain.breaks();
+  ++data_->views;
+  const Mat6 P_drift = prior.topLeftCorner<6, 6>().cast<Scalar>() + S + motion.pose_covariance();
+  const Scalar against_alike = belief_.most_elsewhere() + data_->alike + log_drift(view, now, P_drift);
+  const Scalar least = std::min(against_alike, data_->log_odds), most = std::max(against_alike, data_->log_odds);
+  if (data_->views < kMinViews || !PoseBelief::is_enough(least - std::log(1 + std::exp(least - most)))) return out;
+  data_->views = 0;
+  return {number, view.c_W, x, prior, C};
 }
 
 void LoopFinder::carry(Archive& archive) {
-  auto& [asked, asked_depth, views, place, x, C, sum, log_odds, alike] = data_;
+  places_.carry(archive);
+  if (data_ == nullptr) return;
+  auto& [asked, asked_depth, views, breaks, x, C, sum, log_odds, alike] = *data_;
   pf::carry(archive, asked);
   archive.numbers(asked_depth, x, C, sum, log_odds, alike);
-  archive.counts(views);
-  archive.any(place);
-  places_.carry(archive);
+  archive.counts(views, breaks);
 }
 
 }  // namespace pf
