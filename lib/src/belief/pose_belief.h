@@ -42,7 +42,6 @@ class PoseBelief {
   static Scalar updated(Scalar before, Scalar evidence);
   /// Evidence of a consensus of this frame.
   Scalar evidence(const PoseConsensus& consensus) const { return pose_evidence(consensus, share_, alike_); }
-  const AlikeShare& alike() const { return alike_; }
   const FindShare& share() const { return share_; }
   /// Most that the log-odds of a pose elsewhere can be: however many images agree, the place may be another one that looks alike.
   Scalar most_elsewhere() const { return -alike_.log_share(); }

@@ -34,7 +34,7 @@ void DriftChain::add(int number, int hangs_on, const MapDrift& drift, const Vec3
   if (capacity_ == 0) return;
   const SimilarityCovariance* from = hangs_on > 0 && hangs_on != data_.newest ? sum_of(hangs_on) : nullptr;
   if (from != nullptr) {
-    const bool is_since = hangs_on > data_.closed_at;
+    const bool is_since = data_.hung_on > 0 && hangs_on > data_.closed_at;
     const Data before = data_;
     data_ = {*from,
              is_since ? before.hung : *from,

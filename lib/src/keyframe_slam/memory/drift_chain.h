@@ -14,9 +14,10 @@ class Archive;
 
 /// A return to a place.
 struct LoopClosure {
-  int place = 0;                                ///< number of its keyframe; 0: none
-  Vec3 at_W = Vec3::Zero();                     ///< the camera, before it
-  SimilarityError x = SimilarityError::Zero();  ///< of the map about the newest keyframe, about the camera, as a correction
+  int place = 0;             ///< number of its keyframe; 0: none
+  Vec3 at_W = Vec3::Zero();  ///< the camera, before it
+  SimilarityError x =
+      SimilarityError::Zero();  ///< of the map about the newest keyframe, about the camera, as a correction
   SimilarityCovariance prior = SimilarityCovariance::Zero(), posterior = SimilarityCovariance::Zero();  ///< of x
 };
 

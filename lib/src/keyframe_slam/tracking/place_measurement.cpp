@@ -30,7 +30,7 @@ bool PlaceMeasurement::is_seen(std::uint32_t id) const {
 
 /// By the covariance of the point in its place.
 Mat2 PlaceMeasurement::spread_of(const Searched& s, const Mat26& J_pose) const {
-  const Mat23 J = J_pose.rightCols<3>() * s.place->q_WK.toRotationMatrix();
+  const Mat23 J = pixel_by_place_point(s.place->q_WK, J_pose);
   return J.lazyProduct(s.point->covariance_K()).lazyProduct(J.transpose()) + Mat2::Identity() * (kMapSigma * kMapSigma);
 }
 

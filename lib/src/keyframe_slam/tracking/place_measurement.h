@@ -20,6 +20,13 @@ struct PlaceSighting {
   PoseConsensus consensus;
 };
 
+/// Derivative of the pixel of a place's point by its position in the camera K of the place:   z = pi(p_W), p_W = p_K + R_WK x_K
+///
+/// J_pose   2x6 of project_from_pose() by (theta, p) of the camera: a point moves in it as the camera moves the other way
+inline Mat23 pixel_by_place_point(const Quat& q_WK, const Mat26& J_pose) {
+  return -J_pose.rightCols<3>().lazyProduct(q_WK.toRotationMatrix());
+}
+
 class PlaceMeasurement {
  public:
   static constexpr int kMaxPlaces = 6;
