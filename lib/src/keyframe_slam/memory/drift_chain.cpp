@@ -7,12 +7,15 @@ namespace pf {
 
 bool DriftChain::layout(Arena& arena, int max_parts) {
   capacity_ = max_parts;
-  if (capacity_ > 0) link_ = arena.take<Link>(static_cast<std::size_t>(capacity_));
+  if (capacity_ == 0) return arena.ok();
+  data_ = arena.take<Data>(1);
+  link_ = arena.take<Link>(static_cast<std::size_t>(capacity_));
   return arena.ok();
 }
 
 void DriftChain::init() {
-  data_ = Data();
+  if (data_ == nullptr) return;
+  *data_ = Data();
   keep_only([](int) { return false; });
 }
 
@@ -31,50 +34,52 @@ void DriftChain::set_sum(int number, const SimilarityCovariance& sum) {
 
 /// Where the newest keyframe is not connected with the one before, the camera has been found elsewhere in the map.
 void DriftChain::add(int number, int hangs_on, const MapDrift& drift, const Vec3& p_W) {
-  if (capacity_ == 0) return;
-  const SimilarityCovariance* from = hangs_on > 0 && hangs_on != data_.newest ? sum_of(hangs_on) : nullptr;
+  if (data_ == nullptr) return;
+  const SimilarityCovariance* from = hangs_on > 0 && hangs_on != data_->newest ? sum_of(hangs_on) : nullptr;
   if (from != nullptr) {
-    const bool is_since = data_.hung_on > 0 && hangs_on > data_.closed_at;
-    const Data before = data_;
-    data_ = {*from,
-             is_since ? before.hung : *from,
-             is_since ? before.hung_on : hangs_on,
-             is_since ? before.closed_at : before.newest,
-             before.newest,
-             before.breaks};
-    count_frame(&data_.breaks);
+    const bool is_since = data_->hung_on > 0 && hangs_on > data_->closed_at;
+    const Data before = *data_;
+    *data_ = {*from,
+              is_since ? before.hung : *from,
+              is_since ? before.hung_on : hangs_on,
+              is_since ? before.closed_at : before.newest,
+              before.newest,
+              before.breaks};
+    count_frame(&data_->breaks);
   }
-  data_.newest = number;
+  data_->newest = number;
   if (drift.any) {
     SimilarityCovariance Q = SimilarityCovariance::Zero();
     Q.topLeftCorner<6, 6>() = drift.Q.cast<double>();
     Q(6, 6) = static_cast<double>(drift.sigma_scale) * static_cast<double>(drift.sigma_scale);
-    data_.sum += similarity_covariance_at(-p_W, Q);
+    data_->sum += similarity_covariance_at(-p_W, Q);
   }
-  set_sum(number, data_.sum);
+  set_sum(number, data_->sum);
 }
 
 SimilarityCovariance DriftChain::between(int number, const SimilarityCovariance& older,
                                          const SimilarityCovariance& younger) const {
-  const bool hangs_between = data_.hung_on > 0 && number > data_.hung_on && number <= data_.closed_at;
-  return hangs_between ? SimilarityCovariance(older - data_.hung + younger - data_.hung)
+  const bool hangs_between = data_->hung_on > 0 && number > data_->hung_on && number <= data_->closed_at;
+  return hangs_between ? SimilarityCovariance(older - data_->hung + younger - data_->hung)
                        : SimilarityCovariance(younger - older);
 }
 
 void DriftChain::close(int number, const SimilarityCovariance& sum, const SimilarityCovariance& known) {
-  data_ = {sum + known, sum, number, data_.newest, data_.newest, data_.breaks};
-  count_frame(&data_.breaks);
+  *data_ = {sum + known, sum, number, data_->newest, data_->newest, data_->breaks};
+  count_frame(&data_->breaks);
 }
 
 void DriftChain::move(const Similarity& T) {
-  data_.sum = moved_covariance(T, data_.sum);
-  data_.hung = moved_covariance(T, data_.hung);
+  if (data_ == nullptr) return;
+  data_->sum = moved_covariance(T, data_->sum);
+  data_->hung = moved_covariance(T, data_->hung);
   for (int i = 0; i < capacity_; ++i)
     if (link_[i].number != 0) link_[i].sum = moved_covariance(T, link_[i].sum);
 }
 
 void DriftChain::carry(Archive& archive) {
-  auto& [sum, hung, hung_on, closed_at, newest, breaks] = data_;
+  if (data_ == nullptr) return;
+  auto& [sum, hung, hung_on, closed_at, newest, breaks] = *data_;
   archive.numbers(sum, hung);
   archive.counts(hung_on, closed_at, newest, breaks);
   for (int i = 0; i < capacity_; ++i) {

@@ -26,7 +26,7 @@ struct LoopClosure {
 /// the chain goes on from the place that the camera came back to, and keyframes between the two visits hang on that place at both ends.
 class DriftChain {
  public:
-  /// max_parts: keyframes and places; 0: no room, and no drift is known of anything.
+  /// max_parts: keyframes and places; 0: no room, and init(), add(), sum_of(), move() and carry() do nothing.
   bool layout(Arena& arena, int max_parts);
   void init();
 
@@ -34,7 +34,7 @@ class DriftChain {
   /// the chain goes on; 0: the one before.
   void add(int number, int hangs_on, const MapDrift& drift, const Vec3& p_W);
   /// Of the newest keyframe.
-  const SimilarityCovariance& sum() const { return data_.sum; }
+  const SimilarityCovariance& sum() const { return data_->sum; }
   /// Of a keyframe or place; null where none is known.
   const SimilarityCovariance* sum_of(int number) const;
   void set_sum(int number, const SimilarityCovariance& sum);
@@ -49,11 +49,11 @@ class DriftChain {
   SimilarityCovariance between(int number, const SimilarityCovariance& older,
                                const SimilarityCovariance& younger) const;
   /// Keyframes with larger numbers were made since the camera has last left a part that is at least as old.
-  int left_at(int number) const { return number > data_.closed_at ? number : data_.closed_at; }
+  int left_at(int number) const { return number > data_->closed_at ? number : data_->closed_at; }
   /// The camera is back at a part with this number and sum, known with this covariance against it.
   void close(int number, const SimilarityCovariance& sum, const SimilarityCovariance& known);
   /// How often the chain has gone on from another keyframe than the one before.
-  int breaks() const { return data_.breaks; }
+  int breaks() const { return data_->breaks; }
   /// All of W is moved.
   void move(const Similarity& T);
 
@@ -73,9 +73,9 @@ class DriftChain {
     int breaks = 0;
   };
 
+  Data* data_ = nullptr;  ///< null: no room
   Link* link_ = nullptr;
   int capacity_ = 0;
-  Data data_;
 };
 
 /// How a return to a part moves what was made since, by least squares:
