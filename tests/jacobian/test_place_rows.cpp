@@ -1,7 +1,7 @@
 // Pixels of a place's points, and the drift of the window as an error of a similarity.
 #include "geometry/pnp.h"
 #include "geometry/similarity_error.h"
-#include "keyframe_slam/tracking/place_measurement.h"
+#include "keyframe_slam/loops/place_measurement.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"

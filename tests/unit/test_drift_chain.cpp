@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dense.h"
-#include "keyframe_slam/memory/drift_chain.h"
+#include "keyframe_slam/loops/drift_chain.h"
 #include "support/seeded_random.h"
 #include "support/textured_images.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "keyframe_slam/tracking/loop_finder.h"
+#include "keyframe_slam/loops/loop_finder.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "support/textured_images.h"

@@ -6,7 +6,7 @@ namespace pf {
 void KeyframeMapping::carry(Archive& archive) {
   planes_.carry(archive);
   adjustment_.carry(archive);
-  chain_.carry(archive);
+  loops_.carry(archive);
   saving_.carry(archive);
 }
 
@@ -37,7 +37,6 @@ void KeyframeSlam::carry(Archive& archive) {
   pose_.carry(archive);
   measuring_.carry(archive);
   relocaliser_.carry(archive);
-  loops_.carry(archive);
   record_.carry(archive);
   mapping_.carry(archive);
   start_.carry(archive);

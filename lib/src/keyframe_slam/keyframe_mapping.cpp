@@ -58,21 +58,10 @@ void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   map_.keyframes[keyframe].w_C = motion_.body().w_C;
   if (young) triangulate_inliers(young);
   adjust();
-  add_to_chain(map_.keyframes[keyframe].number);
+  loops_.add_keyframe(adjustment_);
   const CameraView now = motion_.view();
   frame_.correction.add(Similarity::between(before.q_WC, before.c_W, now.q_WC, now.c_W));
   if (map_.keyframes.began_elsewhere()) keeper_.bring_near(motion_.view(), median_depth, 1);
-}
-
-/// A keyframe and a place have the same number.
-void KeyframeMapping::add_to_chain(int newest) {
-  if (settings_.kept.places == 0) return;
-  chain_.keep_only([&](int number) {
-    const int place = map_.places.entry_of(static_cast<std::uint32_t>(number));
-    return map_.keyframes.entry_of(number) >= 0 || (place >= 0 && map_.places.is_present(place));
-  });
-  const AdjustmentShape& shape = adjustment_.shape();
-  chain_.add(newest, shape.is_determined ? shape.hangs_on : 0, adjustment_.drift(), motion_.body().p_W);
 }
 
 /// New points at corners of the newest keyframe's image, which is this frame's.

@@ -2,8 +2,7 @@
 
 #include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
-#include "keyframe_slam/map/tuning.h"
-#include "keyframe_slam/memory/drift_chain.h"
+#include "keyframe_slam/loops/loops.h"
 #include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/planes/plane_upkeep.h"
 #include "keyframe_slam/start/keyframe_record.h"
@@ -21,7 +20,8 @@ class KeyframeMapping {
  public:
   KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
                   KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search, const GivenPixels& given,
-                  const PoseMeasurement& pose, KeyframeRecord& record, KeyframeRelocaliser& relocaliser)
+                  const PoseMeasurement& pose, KeyframeRecord& record, KeyframeRelocaliser& relocaliser,
+                  const PoseBelief& belief)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -34,18 +34,18 @@ class KeyframeMapping {
         record_(record),
         keeper_(relocaliser.keeper()),
         adjustment_(settings, map, planes, noise),
+        loops_(settings, map, planes, noise, search.images(), belief),
         saving_(settings, map, planes, keeper_) {}
 
   bool layout(Arena& arena) {
     saving_.layout(arena);
-    const int places = static_cast<int>(settings_.kept.places);
-    chain_.layout(arena, places > 0 ? places + tuning::keyframe_map::kKeyframes : 0);
+    loops_.layout(arena);
     return adjustment_.layout(arena);
   }
   void init() {
     planes_.init();
     adjustment_.init();
-    chain_.init();
+    loops_.init();
     saving_.init();
   }
 
@@ -58,7 +58,7 @@ class KeyframeMapping {
 
   KeyframeAdjustment& adjustment() { return adjustment_; }
   const KeyframeAdjustment& adjustment() const { return adjustment_; }
-  DriftChain& chain() { return chain_; }
+  Loops& loops() { return loops_; }
   MapSaving& saving() { return saving_; }
   const MapSaving& saving() const { return saving_; }
 
@@ -68,7 +68,6 @@ class KeyframeMapping {
   void triangulate_inliers(bool young);
   bool wants_keyframe(bool young, Scalar median_depth) const;
   void add_frame(bool young, Scalar median_depth);
-  void add_to_chain(int newest);
   void add_points(bool pending, Scalar median_depth);
 
   const Settings& settings_;
@@ -83,7 +82,7 @@ class KeyframeMapping {
   KeyframeRecord& record_;
   PlaceKeeper& keeper_;
   KeyframeAdjustment adjustment_;
-  DriftChain chain_;
+  Loops loops_;
   MapSaving saving_;
 };
 

@@ -34,7 +34,6 @@ bool KeyframeSlam::layout(Arena& arena) {
   placement_.layout(arena);
   unit_.layout(arena);
   relocaliser_.layout(arena);
-  loops_.layout(arena);
   record_.layout(arena);
   return start_.layout(arena);
 }
@@ -52,7 +51,6 @@ void KeyframeSlam::init() {
   placement_.init();
   unit_.init();
   relocaliser_.init();
-  loops_.init();
   record_.init();
   start_.init();
   data_ = Data();
@@ -185,7 +183,7 @@ void KeyframeSlam::learn() {
   if (join.map_id != 0) return placement_.join(join, &data_.median_depth);
   if (settings_.inertial || map_.tables().planes.has_known()) return;
   relocaliser_.keeper().follow_keyframes();
-  const LoopClosure loop = loops_.look(motion_, data_.median_depth, mapping_.chain());
+  const LoopClosure loop = mapping_.loops().look(motion_, data_.median_depth);
   if (loop.place != 0) placement_.close_loop(loop, &data_.median_depth);
 }
 
@@ -222,7 +220,6 @@ void KeyframeSlam::discard_map() {
   start_.start_over();
   motion_.init();
   relocaliser_.init();
-  loops_.init();
   search_.forget_view();
   mapping_.init();
   placement_.init();

@@ -12,7 +12,6 @@
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
-#include "keyframe_slam/tracking/loop_finder.h"
 #include "keyframe_slam/tracking/relocaliser.h"
 
 /// The order of work of one frame with the window as back end (Masoud and Hoff 2015, Figure 4), and nothing else:
@@ -33,7 +32,8 @@ class KeyframeSlam {
         anchors_{map.anchors, map_, planes_},
         unit_{settings, map_, frame_, noise_, imu, motion_},
         search_{settings, map_, planes_, frame_, noise_, given},
-        mapping_{settings, map_, frame_, motion_, planes_, noise_, search_, given, pose_, record_, relocaliser_} {}
+        mapping_{settings, map_,  frame_, motion_, planes_,      noise_,
+                 search_,  given, pose_,  record_, relocaliser_, tracking_.belief()} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
@@ -98,14 +98,13 @@ class KeyframeSlam {
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
   KeyframeRelocaliser relocaliser_{settings_,         map_, motion_, search_.images().tracker(), measuring_,
                                    tracking_.belief()};
-  LoopFinder loops_{settings_, map_, noise_, search_.images(), tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
   KeyframeMapping mapping_;
   KeyframeStart start_{
       settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
       mapping_.saving(), record_, data_.second};
-  MapPlacement placement_{settings_, map_,         frame_,  tracking_, motion_, planes_,      anchors_,
-                          mapping_,  relocaliser_, record_, start_,    unit_,   data_.second, loops_};
+  MapPlacement placement_{settings_, map_,         frame_,  tracking_, motion_, planes_,     anchors_,
+                          mapping_,  relocaliser_, record_, start_,    unit_,   data_.second};
 };
 
 }  // namespace pf

@@ -151,14 +151,15 @@ void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
 void MapPlacement::close_loop(const LoopClosure& loop, Scalar* median_depth) {
   const Similarity T = similarity_of(loop.x, loop.at_W);
   Mat6 covariance;
-  if (!return_.close(loop, relocaliser_.keeper().taken(), &mapping_.chain(), &covariance)) return;
+  Loops& loops = mapping_.loops();
+  if (!loops.close(loop, relocaliser_.keeper().taken(), &covariance)) return;
   record_.init();
   motion_.move(T);
   frame_.correction.add(T);
   mapping_.adjustment().move(T);
   mapping_.adjustment().begin_at(covariance);
-  relocaliser_.move_each(T, [&](const Quat& q_WC, const Vec3& p_W) { return return_.near(q_WC, p_W, *median_depth); });
-  move_mark(return_.near(mark_.q_WC, mark_.p_W, *median_depth));
+  relocaliser_.move_each(T, [&](const Quat& q_WC, const Vec3& p_W) { return loops.near(q_WC, p_W, *median_depth); });
+  move_mark(loops.near(mark_.q_WC, mark_.p_W, *median_depth));
   *median_depth *= T.s;
   const auto place = static_cast<std::uint32_t>(loop.place);
   if (relocaliser_.keeper().bring_back(place)) relocaliser_.keeper().bring_points(place);
@@ -172,8 +173,7 @@ void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
   move_window(T, &map_, &planes_, &motion_);
   frame_.correction.add(T);
   mapping_.adjustment().move(T);
-  mapping_.chain().move(T);
-  loops_.forget();
+  mapping_.loops().move(T);
   map_.tables().anchors.move(tracking_.map_id(), tracking_.map_id(), T);
   relocaliser_.move(T);
   unit_.move(T);

@@ -3,9 +3,7 @@
 #include "keyframe_slam/inertial/keyframe_unit.h"
 #include "keyframe_slam/keyframe_mapping.h"
 #include "keyframe_slam/memory/keyframe_anchors.h"
-#include "keyframe_slam/memory/loop_return.h"
 #include "keyframe_slam/start/keyframe_start.h"
-#include "keyframe_slam/tracking/loop_finder.h"
 #include "keyframe_slam/walls/keyframe_walls.h"
 
 /// Where the map of the window is in W, and its unit of length, as far as something beside its images gives them: a second pose, walls, or
@@ -30,7 +28,7 @@ class MapPlacement {
   MapPlacement(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
                KeyframeMotion& motion, KeyframePlanes& planes, KeyframeAnchors& anchors, KeyframeMapping& mapping,
                KeyframeRelocaliser& relocaliser, KeyframeRecord& record, KeyframeStart& start, KeyframeUnit& unit,
-               SecondPose& second, LoopFinder& loops)
+               SecondPose& second)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -43,14 +41,9 @@ class MapPlacement {
         record_(record),
         start_(start),
         unit_(unit),
-        second_(second),
-        loops_(loops),
-        return_{settings, map, planes} {}
+        second_(second) {}
 
-  bool layout(Arena& arena) {
-    return_.layout(arena);
-    return walls_.layout(arena);
-  }
+  bool layout(Arena& arena) { return walls_.layout(arena); }
   void init() {
     walls_.init();
     mark_ = MarkedPose();
@@ -119,8 +112,6 @@ class MapPlacement {
   KeyframeStart& start_;
   KeyframeUnit& unit_;
   SecondPose& second_;
-  LoopFinder& loops_;
-  LoopReturn return_;
   KeyframeWalls walls_{settings_, map_, frame_, planes_};
   MarkedPose mark_;
 };

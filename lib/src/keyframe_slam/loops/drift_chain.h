@@ -30,8 +30,8 @@ class DriftChain {
   bool layout(Arena& arena, int max_parts);
   void init();
 
-  /// After the adjustment of the newest keyframe, which is at p_W. hangs_on: the newest of the others that are connected with it, from which
-  /// the chain goes on; 0: the one before.
+  /// After the adjustment of the newest keyframe, which is at p_W. hangs_on: the newest of the others that are connected with it, from
+  /// which the chain goes on; 0: the one before.
   void add(int number, int hangs_on, const MapDrift& drift, const Vec3& p_W);
   /// Of the newest keyframe.
   const SimilarityCovariance& sum() const { return data_->sum; }

@@ -1,4 +1,4 @@
-#include "keyframe_slam/memory/loop_return.h"
+#include "keyframe_slam/loops/loop_return.h"
 
 #include "base/table_entries.h"
 #include "keyframe_slam/adjustment/move_window.h"

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "keyframe_slam/memory/drift_chain.h"
+#include "keyframe_slam/loops/drift_chain.h"
+#include "keyframe_slam/loops/place_measurement.h"
 #include "keyframe_slam/tracking/motion.h"
-#include "keyframe_slam/tracking/place_measurement.h"
 
 /// Finds out where the window has drifted to, by older places that its camera comes back to (lib/docs/theory/places.md).
 
@@ -13,7 +13,7 @@ class Archive;
 class LoopFinder {
  public:
   LoopFinder(const Settings& settings, const KeyframeMap& map, const NoiseModel& noise, const ImageSearch& images,
-             PoseBelief& belief)
+             const PoseBelief& belief)
       : settings_(settings), map_(map), belief_(belief), places_(settings, map, noise, images) {}
 
   bool layout(Arena& arena) {
@@ -25,8 +25,8 @@ class LoopFinder {
     if (data_ != nullptr) *data_ = Data();
   }
 
-  /// After a tracked frame that is no keyframe: compares its image with places about its view, where that differs from the last one that was
-  /// compared. Two views that share little must say the same. Returns what they say, once.
+  /// After a tracked frame that is no keyframe: compares its image with places about its view, where that differs from the last one that
+  /// was compared. Two views that share little must say the same. Returns what they say, once.
   LoopClosure look(const KeyframeMotion& motion, Scalar depth, const DriftChain& chain);
   /// W or the map has moved: what earlier views say is of the map before.
   void forget() {
@@ -64,7 +64,7 @@ class LoopFinder {
 
   const Settings& settings_;
   const KeyframeMap& map_;
-  PoseBelief& belief_;
+  const PoseBelief& belief_;
   PlaceMeasurement places_;
   Data* data_ = nullptr;  ///< null: there are no places
 };

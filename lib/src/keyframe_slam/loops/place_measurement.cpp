@@ -1,4 +1,4 @@
-#include "keyframe_slam/tracking/place_measurement.h"
+#include "keyframe_slam/loops/place_measurement.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "keyframe_slam/memory/drift_chain.h"
+#include "keyframe_slam/loops/drift_chain.h"
 
 #include "base/archive.h"
 #include "base/elapsed.h"

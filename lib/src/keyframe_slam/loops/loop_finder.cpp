@@ -1,4 +1,4 @@
-#include "keyframe_slam/tracking/loop_finder.h"
+#include "keyframe_slam/loops/loop_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +18,12 @@ Scalar trace3(const SimilarityCovariance& C, int first) {
   return static_cast<Scalar>(C(first, first) + C(first + 1, first + 1) + C(first + 2, first + 2));
 }
 
+constexpr Scalar kNoDensity = Scalar(-1e6);  ///< ln of a density, where a covariance is none
+
 /// ln N(u; 0, P) without the factor of 2 pi.
 Scalar log_normal(const Vec6& u, const Mat6& P) {
   SmallCholesky<6> factored;
-  if (!factored.factor(P)) return -1e6;
+  if (!factored.factor(P)) return kNoDensity;
   return -(u.dot(factored.solve<1>(u)) + factored.log_det()) / 2;
 }
 
