@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kFrames = 990;    ///< of the walk
 constexpr int kBefore = 800;    ///< is not yet back
-constexpr double kMoved = 0.1;  ///< the closing takes away most of 0.15 m [m]
+constexpr double kMoved = 0.1;  ///< the closing takes away most of 0.19 m [m]
 
 GivenPose given(const pf_slam_t* slam, std::uint32_t id) {
   pf_anchor_t anchor;
@@ -32,9 +32,9 @@ double error_of(const pf_pose_t& pose, const pf_pose_t& truth) {
 void test_the_correction_of_a_closed_loop_should_be_how_poses_move() {
   pf_sim_options_t options;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default("loop", &options));
-  options.seed = 2;
+  options.seed = 104;
   options.frames = kFrames;
-  std::printf("seed %d\n", 2);
+  std::printf("seed %d\n", 104);
   const std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim(pf_sim_open("loop", &options), pf_sim_close);
   TEST_ASSERT_NOT_NULL(sim.get());
   pf_config_t config;
