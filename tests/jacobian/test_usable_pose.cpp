@@ -95,8 +95,8 @@ struct FrameOfScene {
     map.init();
     frame.init();
     for (const int slot : scene.slots) {
-      frame.add({map.features.add(slot), 0, MatchStatus::kInlier, BlockKind::kPoint, false, Vec2::Zero(), Mat2::Zero(),
-                 Vec2::Zero(), Scalar(0)});
+      frame.add({map.features.add(slot), 0, MatchStatus::kInlier, BlockKind::kPoint, false, false, Vec2::Zero(),
+                 Mat2::Zero(), Vec2::Zero(), Scalar(0)});
     }
   }
 };

@@ -33,7 +33,7 @@ double turn_error(const RenderedRun::Frame& first, const RenderedRun::Frame& las
 /// the rotation is off at worst [rad].
 int follow_smeared(std::size_t first, double* off) {
   RenderedRun::backend = PF_BACKEND_WINDOW;
-  RenderedRun run("room", 60, RenderedRun::Start::kNone);
+  RenderedRun run("room", 64, RenderedRun::Start::kNone);
   run.tracked_until(first);
   TEST_ASSERT_EQUAL_INT(PF_OK, run.frames.back().status);
   run.smear = 9;
@@ -50,7 +50,7 @@ int follow_smeared(std::size_t first, double* off) {
 
 void test_window_should_follow_by_what_a_smeared_picture_leaves() {
   int tracked = 0;
-  constexpr std::size_t kFirst = 32, kRuns = 20;
+  constexpr std::size_t kFirst = 36, kRuns = 20;
   double off[kRuns];
   for (std::size_t k = 0; k < kRuns; ++k) tracked += follow_smeared(kFirst + k, &off[k]);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(static_cast<int>(kRuns * kFrames * 4 / 5), tracked);

@@ -30,10 +30,18 @@ double scale(const RenderedRun& run) {
   return sum / count;
 }
 
+/// From nothing, with half of the desk's depth as the first one, so that the scale is far off where nothing else tells it.
+void begin(RenderedRun* run) {
+  run->config.first_depth.depth = 0.5;
+  run->create();
+}
+
 /// bound: of the scale's error. The nearer the second place, the less well it tells the scale.
 void scales_from(std::size_t second, double bound) {
   RenderedRun::backend = PF_BACKEND_WINDOW;
   RenderedRun without("desk", kFrames, RenderedRun::Start::kNone), with("desk", kFrames, RenderedRun::Start::kNone);
+  begin(&without);
+  begin(&with);
   without.tracked_until(kFrames);
   pf_pose_t pose{};
   pose.q_WC[0] = 1;
@@ -43,11 +51,11 @@ void scales_from(std::size_t second, double bound) {
   with.tracked_until(kFrames);
   std::printf("frame %d: scale %.4f, without %.4f\n", static_cast<int>(second), scale(with), scale(without));
   TEST_ASSERT_TRUE(std::fabs(scale(with) - 1) < bound);
-  TEST_ASSERT_TRUE(std::fabs(scale(without) - 1) > 0.1);
+  TEST_ASSERT_TRUE(std::fabs(scale(without) - 1) > 0.3);
 }
 
 void test_second_pose_should_give_the_scale_of_a_running_map() { scales_from(120, 0.04); }
-void test_second_pose_should_give_the_scale_before_depths_are_known() { scales_from(20, 0.1); }
+void test_second_pose_should_give_the_scale_before_depths_are_known() { scales_from(26, 0.1); }
 
 }  // namespace
 

@@ -52,8 +52,8 @@ struct Bench {
   }
   void add(int feature, const Vec2& pixel, MatchStatus status, BlockKind kind = BlockKind::kPoint) {
     const Vec2 found = pixel + random.normals<2>(kMatchPx);
-    frame.add({feature, static_cast<std::uint32_t>(feature + 1), status, kind, true, pixel, Mat2::Identity(), found,
-               Scalar(0)});
+    frame.add({feature, static_cast<std::uint32_t>(feature + 1), status, kind, true, false, pixel, Mat2::Identity(),
+               found, Scalar(0)});
     frame.report.inliers += status == MatchStatus::kInlier ? 1 : 0;
   }
   bool note() {

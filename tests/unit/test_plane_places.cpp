@@ -74,8 +74,8 @@ struct Table : PlaneKeeperBench {
       Vec2 z;
       TEST_ASSERT_TRUE(project(settings.camera, Vec3(truth[i] - body.p_W), &z));
       z += random.normals<2>(sigma_px);
-      frame.add(
-          {entry[i], f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, z, Mat2::Identity(), z, Scalar(1)});
+      frame.add({entry[i], f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, false, z, Mat2::Identity(), z,
+                 Scalar(1)});
     }
     planes.maintain();
   }

@@ -57,7 +57,8 @@ struct Bench : PlaneKeeperBench {
     f.last_seen_ns = frame.report.t_ns;
     Vec2 z;
     TEST_ASSERT_TRUE(project(settings.camera, Vec3(depth * kDepth * ray_W - body.p_W), &z));
-    frame.add({entry, f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, z, Mat2::Identity(), z, Scalar(1)});
+    frame.add(
+        {entry, f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, false, z, Mat2::Identity(), z, Scalar(1)});
     planes.maintain();
   }
 };

@@ -163,8 +163,6 @@ void test_a_common_part_should_speak_against_a_pose_in_sharp_images_only() {
   for (int frame = 0; frame < 20; ++frame) share.learn(200, 160);
   PoseConsensus few = consensus_of(random, 150, 17, 15, false);
   few.log_density = 17 * log_normal_density(2, 0, 1);
-  TEST_ASSERT_TRUE(pose_evidence(few, share, AlikeShare()) > -1);
-  few.of_all_points = true;
   TEST_ASSERT_TRUE(pose_evidence(few, share, AlikeShare()) < -3);
   share.begin_frame(Scalar(0.01));
   TEST_ASSERT_DOUBLE_WITHIN(0.3, 0.0, static_cast<double>(pose_evidence(few, share, AlikeShare())));
@@ -172,7 +170,6 @@ void test_a_common_part_should_speak_against_a_pose_in_sharp_images_only() {
   few.is_elsewhere = true;  // how much is found from there is open as well
   TEST_ASSERT_DOUBLE_WITHIN(0.3, 0.0, static_cast<double>(pose_evidence(few, share, AlikeShare())));
   PoseConsensus most = consensus_of(random, 150, 100, 15, false);
-  most.of_all_points = true;
   most.log_density = 100 * log_normal_density(2, 0, 1);
   TEST_ASSERT_TRUE(pose_evidence(most, share, AlikeShare()) > 5);
 }
@@ -180,20 +177,41 @@ void test_a_common_part_should_speak_against_a_pose_in_sharp_images_only() {
 void test_shares_elsewhere_should_sum_to_their_probabilities() {
   PoseConsensus consensus;
   consensus.searched = 12;
+  FindShare share;
+  share.init();
   AlikeShare alike;
   alike.init();
   alike.note(true);
-  for (const bool of_all : {false, true}) {
-    consensus.of_all_points = of_all;
-    Scalar sum = 0, ways = 1;
-    for (int k = 0; k <= consensus.searched; ++k) {
-      consensus.inliers = k;
-      sum += ways * std::exp(log_share_elsewhere(consensus, alike));
-      ways *= static_cast<Scalar>(consensus.searched - k) / static_cast<Scalar>(k + 1);
-    }
-    const Scalar expected = std::exp(alike.log_share()) + (of_all ? tuning::common_part::kShare : Scalar(0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, static_cast<double>(expected), static_cast<double>(sum));
+  Scalar sum = 0, ways = 1;
+  for (int k = 0; k <= consensus.searched; ++k) {
+    consensus.inliers = k;
+    sum += ways * std::exp(log_share_elsewhere(consensus, share, alike));
+    ways *= static_cast<Scalar>(consensus.searched - k) / static_cast<Scalar>(k + 1);
   }
+  const Scalar expected = std::exp(alike.log_share()) + tuning::common_part::kShare;
+  TEST_ASSERT_DOUBLE_WITHIN(1e-5, static_cast<double>(expected), static_cast<double>(sum));
+}
+
+/// A tenth of the features, of which as many have a neighbour as chance has it, or all.
+void test_a_part_that_is_found_whole_should_speak_against_a_pose() {
+  SeededRandom random(304);
+  FindShare share;
+  share.init();
+  for (int frame = 0; frame < 20; ++frame) share.learn(200, 160);
+  PoseConsensus few = consensus_of(random, 150, 17, 15, false);
+  few.log_density = 17 * log_normal_density(2, 0, 1);
+  few.is_elsewhere = true;
+  const Scalar unknown = pose_evidence(few, share, AlikeShare());
+  few.paired = 2;
+  TEST_ASSERT_TRUE(pose_evidence(few, share, AlikeShare()) > unknown + 1);
+  few.paired = 16;
+  TEST_ASSERT_TRUE(pose_evidence(few, share, AlikeShare()) < unknown - 4);
+  PoseConsensus most = consensus_of(random, 150, 100, 15, false);
+  most.log_density = 100 * log_normal_density(2, 0, 1);
+  const Scalar usual = pose_evidence(most, share, AlikeShare());
+  most.paired = 85;
+  TEST_ASSERT_DOUBLE_WITHIN(0.1, static_cast<double>(usual),
+                            static_cast<double>(pose_evidence(most, share, AlikeShare())));
 }
 
 /// Any share of n: the sum over the ways to find k, and over k.
@@ -223,6 +241,7 @@ int main() {
   RUN_TEST(test_alike_views_should_take_from_what_agrees);
   RUN_TEST(test_a_common_part_should_speak_against_a_pose_in_sharp_images_only);
   RUN_TEST(test_shares_elsewhere_should_sum_to_their_probabilities);
+  RUN_TEST(test_a_part_that_is_found_whole_should_speak_against_a_pose);
   RUN_TEST(test_any_share_should_sum_to_one);
   return UNITY_END();
 }

@@ -52,7 +52,7 @@ struct Bench {
       for (int i = 0; i < 30; ++i) {
         const Vec2 c(static_cast<Scalar>(20 * (i % 6) - 50), static_cast<Scalar>(20 * (i / 6) - 40));
         const Vec2 z = Vec2(160, 120) + (1 + growth * t) * c + drift * t + random.normals<2>(0.3);
-        frame.add({i, static_cast<std::uint32_t>(i + 1), MatchStatus::kInlier, BlockKind::kPoint, false, z,
+        frame.add({i, static_cast<std::uint32_t>(i + 1), MatchStatus::kInlier, BlockKind::kPoint, false, false, z,
                    Mat2::Zero(), z, Scalar(0)});
       }
       rests += detector.note(supported, &rest);

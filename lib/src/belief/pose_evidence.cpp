@@ -17,6 +17,12 @@ Scalar log_rising(Scalar a, int n) {
   return sum;
 }
 
+/// ln of the probability that just k of n are found where the chance has the prior Beta(kWeight mean, kWeight (1 - mean)).
+Scalar log_share_about(Scalar mean, int n, int k) {
+  const Scalar a = tuning::find_share::kWeight * mean, b = tuning::find_share::kWeight - a;
+  return log_rising(a, k) + log_rising(b, n - k) - log_rising(a + b, n);
+}
+
 }  // namespace
 
 Scalar log_chance_density(Scalar searched_px2) {
@@ -40,10 +46,9 @@ void FindShare::learn(int searched, int inliers) {
   mean_ = std::clamp(mean_ + kGain * (share - mean_), kLeast, kGreatest);
 }
 
-Scalar FindShare::log_usual(int searched, int inliers) const {
-  const Scalar a = tuning::find_share::kWeight * mean_, b = tuning::find_share::kWeight - a;
-  return log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
-}
+Scalar FindShare::log_usual(int searched, int inliers) const { return log_share_about(mean_, searched, inliers); }
+
+Scalar FindShare::log_paired(int inliers, int paired) const { return log_share_about(mean_, inliers, paired); }
 
 Scalar FindShare::log_probability(int searched, int inliers) const {
   const Scalar usual = log_usual(searched, inliers);
@@ -70,6 +75,15 @@ Scalar log_found(const PoseConsensus& consensus, const FindShare& share) {
                                 : share.log_probability(consensus.searched, consensus.inliers);
 }
 
+/// ln r of log_share_elsewhere().
+Scalar log_neighbours(const PoseConsensus& consensus, const FindShare& share) {
+  const int found = consensus.inliers;
+  if (consensus.paired < 0 || consensus.searched < 2) return 0;
+  const Scalar n = static_cast<Scalar>(consensus.searched);
+  const Scalar scattered = std::clamp(static_cast<Scalar>(found - 1) / (n - 1), 1 / n, 1 - 1 / n);
+  return share.log_paired(found, consensus.paired) - log_share_about(scattered, found, consensus.paired);
+}
+
 }  // namespace
 
 Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share) {
@@ -80,18 +94,18 @@ Scalar log_any_share(int searched, int inliers) {
   return log_rising(1, inliers) + log_rising(1, searched - inliers) - log_rising(2, searched);
 }
 
-Scalar log_share_elsewhere(const PoseConsensus& consensus, const AlikeShare& alike) {
+Scalar log_share_elsewhere(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike) {
   using namespace tuning::common_part;
   const int found = consensus.inliers, missed = consensus.searched - found;
   const Scalar any = log_any_share(consensus.searched, found);
-  if (!consensus.of_all_points) return any + alike.log_share();
-  const Scalar few = log_rising(1, found) + log_rising(kFew, missed) - log_rising(1 + kFew, consensus.searched);
+  const Scalar few = log_neighbours(consensus, share) + log_rising(1, found) + log_rising(kFew, missed) -
+                     log_rising(1 + kFew, consensus.searched);
   return any + std::log(std::exp(alike.log_share()) + kShare * std::exp(few - any));
 }
 
 Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike) {
   const Scalar against_chance = evidence_against_chance(consensus, share);
-  const Scalar against_alike = log_found(consensus, share) - log_share_elsewhere(consensus, alike);
+  const Scalar against_alike = log_found(consensus, share) - log_share_elsewhere(consensus, share, alike);
   const Scalar least = std::min(against_chance, against_alike);
   return least - std::log(1 + std::exp(least - std::max(against_chance, against_alike)));
 }

@@ -11,14 +11,14 @@ class Archive;
 
 /// What the searches of a frame have found, and how much of it agrees with one pose.
 struct PoseConsensus {
-  int searched = 0;            ///< features
-  int inliers = 0;             ///< of them: found where the pose has them
-  Scalar log_density = 0;      ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
-  Scalar log_chance = 0;       ///< sum of log_chance_density() over the inliers
-  Scalar log_zoom = 0;         ///< ln of the focal length over the calibrated one, by the inliers' pixels
-  Scalar lens_evidence = 0;    ///< lens_evidence() of the pixels; 0: they do not measure it
-  bool of_all_points = false;  ///< all points in view were searched for: wrong places share some with the right one
-  bool is_elsewhere = false;   ///< the pose is not the predicted one: how much earlier frames found says nothing of it
+  int searched = 0;           ///< features
+  int inliers = 0;            ///< of them: found where the pose has them
+  Scalar log_density = 0;     ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
+  Scalar log_chance = 0;      ///< sum of log_chance_density() over the inliers
+  Scalar log_zoom = 0;        ///< ln of the focal length over the calibrated one, by the inliers' pixels
+  Scalar lens_evidence = 0;   ///< lens_evidence() of the pixels; 0: they do not measure it
+  int paired = -1;            ///< of the inliers: the nearest of all features searched for is one too; -1: not counted
+  bool is_elsewhere = false;  ///< the pose is not the predicted one: how much earlier frames found says nothing of it
 };
 
 /// ln of the density with which a search of this area finds something where its feature is not [ln px^-2].
@@ -46,6 +46,9 @@ class FindShare {
   /// True where so few are found that any share is more likely than that of earlier frames: this image is less sharp, or the pose about
   /// which they were searched for is wrong, and those found are a part that agrees by chance.
   bool is_unlikely(int searched, int inliers) const;
+  /// ln of the probability that just `paired` of `inliers` have an inlier as nearest neighbour, where a part is found as usual and the rest
+  /// is not: about the same mean m.
+  Scalar log_paired(int inliers, int paired) const;
   /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
   Scalar in_frame(int searched, int inliers) const;
 
@@ -69,11 +72,16 @@ Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& 
 Scalar log_any_share(int searched, int inliers);
 
 /// ln of the probability that just these `inliers` of `searched` features agree in a wrong place that has something in common with the
-/// right one, where they agree as well as there. A place that looks like it, one in s, gives any share of them. Where all points in view
-/// are searched for, a part that looks like a part (a poster, a row of tags, the same wall from elsewhere) gives a few:
+/// right one, where they agree as well as there. A place that looks like it, one in s, gives any share of them; a part that looks like a
+/// part (a poster, a row of tags, the same wall from elsewhere) a few:
 ///
-///   ln(s B(k + 1, n - k + 1) + kShare B(k + 1, n - k + kFew) / B(1, kFew))
-Scalar log_share_elsewhere(const PoseConsensus& consensus, const AlikeShare& alike);
+///   ln(s B(k + 1, n - k + 1) + kShare r B(k + 1, n - k + kFew) / B(1, kFew))
+///
+/// r is of the inliers' neighbours: the right pose's misses lie among its finds, and the part is found whole. Where j of the k inliers have
+/// an inlier as nearest neighbour, with p = (k - 1) / (n - 1),
+///
+///   r = P(j of k | Beta(kWeight m, kWeight (1 - m))) / P(j of k | Beta(kWeight p, kWeight (1 - p)))
+Scalar log_share_elsewhere(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike);
 
 /// The same ratio, where a wrong pose may also be in such a place:
 ///

@@ -58,8 +58,8 @@ inline constexpr Scalar kLeastSpread = Scalar(0.05);  ///< the same, at least
 inline constexpr Scalar kGain = Scalar(0.1);          ///< of a frame, in mean and variance
 }  // namespace sharpness_belief
 
-/// What a wrong place has in common with the right one where all points in view are searched for, measured on frames in random order
-/// (lib/docs/lab/2026-11/belief.md).
+/// What a wrong place has in common with the right one, measured on frames in random order in the window, which searches for all points in
+/// view (lib/docs/lab/2026-11/belief.md).
 namespace common_part {
 inline constexpr Scalar kShare = Scalar(0.5);  ///< of wrong places that have one
 inline constexpr Scalar kFew = Scalar(20);     ///< the part is Beta(1, kFew) of what is searched for: one in 21

@@ -9,6 +9,7 @@ void StartRecord::carry(Archive& archive) {
   archive.any(begin_ns_);
   archive.within(frames_, 0, kMaxFrames);
   archive.within(features_, 0, kMaxFeatures);
+  archive.within(held_, -1, kMaxFrames - 1);
   for (int i = 0; i < features_; ++i) archive.numbers(ray_[i]);
   for (int k = 0; k < frames_; ++k) {
     auto& [t_ns, q_WC, p_W] = frame_[k];

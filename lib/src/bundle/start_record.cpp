@@ -18,6 +18,7 @@ void StartRecord::init(std::int64_t begin_ns) {
   begin_ns_ = begin_ns;
   frames_ = 0;
   features_ = 0;
+  held_ = -1;
 }
 
 int StartRecord::add_feature(const Vec3& ray) {
@@ -27,18 +28,26 @@ int StartRecord::add_feature(const Vec3& ray) {
 }
 
 int StartRecord::add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
-  if (frames_ == kMaxFrames) {
-    for (int k = 1; 2 * k < kMaxFrames; ++k) {
-      frame_[k] = frame_[2 * k];
-      std::copy(pixel_ + 2 * k * kMaxFeatures, pixel_ + (2 * k + 1) * kMaxFeatures, pixel_ + k * kMaxFeatures);
-    }
-    frames_ = kMaxFrames / 2;
-  }
+  if (frames_ == kMaxFrames) drop_every_second();
   frame_[frames_].t_ns = t_ns;
   frame_[frames_].q_WC = q_WC;
   frame_[frames_].p_W = p_W;
   for (int i = 0; i < kMaxFeatures; ++i) pixel_[frames_ * kMaxFeatures + i].seen = false;
   return frames_++;
+}
+
+/// Of the frames 2k - 1 and 2k the second stays, or the one that is held.
+void StartRecord::drop_every_second() {
+  frames_ = 1;
+  for (int k = 1; 2 * k <= kMaxFrames; ++k) {
+    const bool is_held = held_ == 2 * k - 1 || held_ == 2 * k;
+    const int from = held_ == 2 * k - 1 ? held_ : 2 * k;
+    if (from >= kMaxFrames) continue;
+    frame_[k] = frame_[from];
+    std::copy(pixel_ + from * kMaxFeatures, pixel_ + (from + 1) * kMaxFeatures, pixel_ + k * kMaxFeatures);
+    if (is_held) held_ = k;
+    frames_ = k + 1;
+  }
 }
 
 void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {

@@ -10,7 +10,7 @@ namespace pf {
 class Archive;
 
 /// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every
-/// second frame is dropped, so that a resting camera does not fill it.
+/// second frame is dropped, so that a resting camera does not fill it; but not the one that is held.
 class StartRecord {
  public:
   static constexpr int kMaxFrames = 32;
@@ -31,6 +31,8 @@ class StartRecord {
   void set_ray(int feature, const Vec3& ray) { ray_[feature] = ray; }
   /// Adds a later frame with its estimated pose; add_pixel adds its pixels. Returns its index.
   int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
+  /// The newest frame stays in the record. One frame is held, the last for which this was called.
+  void hold_newest() { held_ = frames_ - 1; }
   void add_pixel(int frame, int feature, const Vec2& pixel);
   /// Velocities of a frame by the poses of those beside it; -1: of frame 0.
   BundleRates rates(int k) const;
@@ -50,12 +52,15 @@ class StartRecord {
   void carry(Archive& archive);  ///< base/archive.h
 
  private:
+  void drop_every_second();
+
   Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity
   Vec3* ray_ = nullptr;
   BundlePixel* pixel_ = nullptr;
   std::int64_t begin_ns_ = 0;
   int frames_ = 0;
   int features_ = 0;
+  int held_ = -1;  ///< frame that is not dropped; -1: none
 };
 
 }  // namespace pf

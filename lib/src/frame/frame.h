@@ -25,6 +25,7 @@ struct Match {
   MatchStatus status;
   BlockKind kind;
   bool searched;  ///< the image was compared with its appearance
+  bool agrees;    ///< with the pose that was weighed last
   Vec2 predicted;
   Mat2 innovation;
   Vec2 measured;
@@ -132,6 +133,10 @@ class Frame {
   int add(const Match& match) {
     match_[count_] = match;
     return count_++;
+  }
+  /// Before a pose is weighed: no match agrees with it yet.
+  void forget_agreement() {
+    for (int i = 0; i < count_; ++i) match_[i].agrees = false;
   }
   /// Detaches the matches of a feature that has left the map. They stay readable.
   void forget(int feature) {

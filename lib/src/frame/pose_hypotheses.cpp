@@ -5,6 +5,23 @@
 #include "frame/tuning.h"
 
 namespace pf {
+namespace {
+
+/// -1: it is the only one.
+int nearest_searched(const Frame& frame, int of) {
+  int nearest = -1;
+  Scalar least = 0;
+  for (int t = 0; t < frame.match_count(); ++t) {
+    if (t == of || !frame.match(t).searched) continue;
+    const Scalar distance2 = (frame.match(t).predicted - frame.match(of).predicted).squaredNorm();
+    if (nearest >= 0 && !(distance2 < least)) continue;
+    nearest = t;
+    least = distance2;
+  }
+  return nearest;
+}
+
+}  // namespace
 
 PoseHypothesis PoseHypothesis::about(const Quat& q_WC, const Vec3& p_W, Scalar rotation, Scalar position) {
   PoseHypothesis out;
@@ -37,6 +54,20 @@ void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* cons
   const Scalar known = is_uncertain ? std::sqrt(lens.variance[0]) / settings.camera.fx : Scalar(0);
   consensus->log_zoom = fit.log_ratio;
   consensus->lens_evidence = lens_evidence(fit.log_ratio, fit.variance, known);
+}
+
+int paired_inliers(const Frame& frame) {
+  int paired = 0;
+  for (int t = 0; t < frame.match_count(); ++t) {
+    if (!frame.match(t).agrees || !frame.match(t).searched) continue;
+    const int nearest = nearest_searched(frame, t);
+    if (nearest >= 0 && frame.match(nearest).agrees) ++paired;
+  }
+  return paired;
+}
+
+void note_paired(const Frame& frame, const FindShare& share, PoseConsensus* consensus) {
+  if (share.is_unlikely(consensus->searched, consensus->inliers)) consensus->paired = paired_inliers(frame);
 }
 
 Scalar PoseHypotheses::evidence(const PoseConsensus& consensus) const {

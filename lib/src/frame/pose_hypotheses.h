@@ -2,6 +2,7 @@
 
 #include "belief/pose_belief.h"
 #include "bundle/zoom_fit.h"
+#include "frame/frame.h"
 #include "frame/settings.h"
 #include "geometry/camera.h"
 #include "geometry/pnp.h"
@@ -42,6 +43,13 @@ bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyr
 
 /// Adds the evidence of its pixels about the lens to a consensus; nothing where they do not measure it.
 void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* consensus);
+
+/// Of the matches that agree with a pose (Match::agrees), how many have another one as their nearest neighbour among all that were searched
+/// for in this frame, by their predicted pixels. Under the right pose any feature may be missed; in a wrong place the part that looks like
+/// the right one is found whole.
+int paired_inliers(const Frame& frame);
+/// Counts them for a consensus that finds so few features that they may be a part which looks like another one.
+void note_paired(const Frame& frame, const FindShare& share, PoseConsensus* consensus);
 
 /// The hypotheses of a frame that have been tried. n of them divide the odds of each by n.
 class PoseHypotheses {

@@ -67,6 +67,9 @@ void MapPlacement::scale_by_second_pose(Scalar* median_depth) {
   const Vec3 at_W = is_now ? motion_.body().p_W : second.estimate_W;
   const Scalar moved = (at_W - first_W).norm();
   const Scalar scale = (second.p_W - first_W).norm() / moved;
+  const Scalar now =
+      map_.median_depth(motion_.body().q_WC, motion_.body().p_W);  // the record may just have been solved
+  if (now > Scalar(0)) *median_depth = now;
   second_ = SecondPose();
   record_.init();
   if (!(is_now || second.estimated) || !(moved > tuning::second_pose::kMinSecondShift * *median_depth) ||

@@ -42,7 +42,7 @@ CornerUse CornerFeatures::add_one(const Vec2& pixel, int* anchor) {
     return CornerUse::kNotHere;
   }
   frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, filter_.state().block[map_.features[entry].slot].kind,
-              false, pixel, Mat2::Zero(), pixel, Scalar(0)});
+              false, false, pixel, Mat2::Zero(), pixel, Scalar(0)});
   return CornerUse::kTaken;
 }
 

@@ -78,7 +78,7 @@ int FeatureSearch::list_visible() {
     Candidate& candidate = update_.candidate(i);
     const Feature& f = map_.features[candidate.feature];
     candidate.match = frame_.add({candidate.feature, f.id, MatchStatus::kMissed, filter_.state().block[f.slot].kind,
-                                  false, Vec2::Zero(), Mat2::Zero(), Vec2::Zero(), Scalar(0)});
+                                  false, false, Vec2::Zero(), Mat2::Zero(), Vec2::Zero(), Scalar(0)});
   }
   return count;
 }

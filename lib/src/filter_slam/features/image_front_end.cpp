@@ -35,8 +35,8 @@ UpdateOutcome ImageFrontEnd::measure(MeasureMode mode) {
   hypotheses_.begin();
   outcome_ = UpdateOutcome();
   listed_ = list_candidates();
-  const bool followed = mode.starts && !mode.is_vague && search_.find_followed(listed_);
-  if (!mode.is_vague) measure_listed(mode, followed);
+  bool followed = mode.starts && !mode.is_vague && search_.find_followed(listed_);
+  if (!mode.is_vague) followed = measure_listed(mode, followed);
   if (frame_.report.inliers == 0 && (followed || search_.find_followed(listed_))) {
     if (!mode.is_vague) {
       hypotheses_.add();
@@ -57,13 +57,18 @@ int ImageFrontEnd::list_candidates() {
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used. follows: searches go about the places where the picture as a whole has gone.
-void ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
+/// anything is used. follows: searches go about the places where the picture as a whole has gone, unless a start finds few of those first
+/// ones there, since something may have moved before the camera. Returns whether they do.
+bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
   const SearchMode search = {follows, mode.parallax_lasts};
   const int count = listed_;
   const int scouts = search_.widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search_.search(0, scouts > 0 ? scouts : count, search);
   const int scouted = frame_.report.attempts;
+  if (follows && mode.starts && belief_.share().is_unlikely(scouted, found)) {
+    listed_ = list_candidates();
+    return measure_listed(mode, false);
+  }
   if (scouts > 0) {
     const bool used = update_with_consensus({0, found, scouted, false, follows}, mode);
     if (used) {
@@ -73,12 +78,13 @@ void ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
     const int more = search_.search(scouts, count - scouts, search);
     if (used) {
       update_with_consensus({scouts, more, frame_.report.attempts - scouted, true, follows}, mode);
-      return;
+      return follows;
     }
     for (int k = 0; k < more; ++k, ++found)
       if (found != scouts + k) update_.swap(found, scouts + k);
   }
   update_with_consensus({0, found, frame_.report.attempts, true, follows}, mode);
+  return follows;
 }
 
 /// Finds the consensus of the matches of a range, and updates the filter with it. False, with nothing used, where its evidence is not
@@ -133,11 +139,14 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
   consensus.log_density = log_normal_density(fit.nis, fit.log_det, inliers);
   if (range.follows) consensus.log_density = 0;
   const Scalar* const searched_px2 = search_.searched_areas(first, found, range.follows);
+  frame_.forget_agreement();
   for (int i = 0; i < found; ++i) {
     if (update_.keep()[first + i] == 0) continue;
+    frame_.match(update_.candidate(first + i).match).agrees = true;
     consensus.log_chance += log_chance_density(searched_px2[i]);
     if (range.follows) consensus.log_density += update_.candidate(first + i).log_density;
   }
+  note_paired(frame_, belief_.share(), &consensus);
   note_zoom(fit.zoom, settings_, &consensus);
   return consensus;
 }

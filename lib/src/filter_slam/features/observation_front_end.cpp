@@ -64,8 +64,9 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count, b
     if (!is_covariance(S)) continue;
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
     const bool is_inlier = nis < settings_.gate;
-    const int match = frame_.add({entry, feature.id, is_inlier ? MatchStatus::kInlier : MatchStatus::kOutlier,
-                                  filter_.state().block[feature.slot].kind, false, o.predicted, S, o.measured, nis});
+    const int match =
+        frame_.add({entry, feature.id, is_inlier ? MatchStatus::kInlier : MatchStatus::kOutlier,
+                    filter_.state().block[feature.slot].kind, false, false, o.predicted, S, o.measured, nis});
     ++frame_.report.matches;
     if (!is_inlier) {
       count_up(&feature.rejections);
@@ -95,7 +96,7 @@ void ObservationFrontEnd::add_features(const PixelObservation* observations, int
     const int entry = features_.add(anchor, o.pixel, Mat2::Identity() * (o.sigma_px * o.sigma_px));
     if (entry < 0) continue;
     map_.features[entry].external_id = o.external_id;
-    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, false, o.pixel,
+    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, false, false, o.pixel,
                 Mat2::Zero(), o.pixel, Scalar(0)});
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children

@@ -136,6 +136,9 @@ bool Relocaliser::try_pose(const SearchPose& about, int found, Tried* out) {
     weigh_jointly(filter_, update_.observations(), searched_px2_, found, kTriples, update_.keep(), fit,
                   &out->consensus);
   }
+  frame_.forget_agreement();
+  for (int i = 0; i < found; ++i) frame_.match(update_.candidate(i).match).agrees = update_.keep()[i] != 0;
+  note_paired(frame_, belief_.share(), &out->consensus);
   frame_.note_consensus(out->consensus.inliers);
   return out->consensus.inliers >= settings_.min_inliers;
 }

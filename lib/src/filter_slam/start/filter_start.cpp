@@ -147,7 +147,7 @@ void FilterStart::add_target_matches(const TargetSighting& sighting) {
     search_.remember(i, z, {sighting.pose.q_WC, sighting.pose.p_WC});
     f.observations = f.attempts = 1;
     ++report.inliers;
-    frame_.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, z, Mat2::Zero(), z, Scalar(0)});
+    frame_.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, false, z, Mat2::Zero(), z, Scalar(0)});
   }
   report.attempts = report.matches = report.inliers;
 }

@@ -31,12 +31,12 @@ void Frame::carry(Archive& archive, const FeatureTable& features) {
   archive.within(masked, 0, 1000);
   archive.within(count_, 0, capacity_);
   for (int i = 0; i < count_; ++i) {
-    auto& [feature, id, status, kind, searched, predicted, innovation, measured, nis] = match_[i];
+    auto& [feature, id, status, kind, searched, agrees, predicted, innovation, measured, nis] = match_[i];
     archive.within(feature, -1, features.capacity() - 1);
     archive.any(id);
     archive.within(status, static_cast<int>(MatchStatus::kInlier), static_cast<int>(MatchStatus::kNew));
     archive.within(kind, 0, kBlockKinds - 1);
-    archive.flags(searched);
+    archive.flags(searched, agrees);
     archive.numbers(predicted, innovation, measured, nis);
     archive.require(feature < 0 || features.used(feature));
   }

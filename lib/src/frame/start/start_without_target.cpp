@@ -32,12 +32,13 @@ void StartWithoutTarget::add_feature(std::uint32_t id, const Vec3& ray_C) {
   if (index >= 0) data_.id[index] = id;
 }
 
-void StartWithoutTarget::begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns) {
+void StartWithoutTarget::begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns, bool held) {
   const Quat q_KW = data_.base_q_WC.conjugate();
   data_.is_second = record_.frames() == 0;
   data_.others = 0;
   data_.t_ns = t_ns;
   data_.frame = record_.add_frame(t_ns, q_KW * q_WC, q_KW * (p_W - data_.base_p_W));
+  if (held) record_.hold_newest();
 }
 
 void StartWithoutTarget::add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel) {

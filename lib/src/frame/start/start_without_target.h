@@ -37,8 +37,9 @@ class StartWithoutTarget {
   }
   /// Adds a feature of the first frame, by its ray there.
   void add_feature(std::uint32_t id, const Vec3& ray_C);
-  /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time.
-  void begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
+  /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time. held: it stays in
+  /// the record, however many come.
+  void begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns, bool held = false);
   void add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel);
   /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over, and so is a check. kStill
   /// comes only as long as no depths are known.

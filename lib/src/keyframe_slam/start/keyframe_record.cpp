@@ -48,7 +48,8 @@ void KeyframeRecord::begin_at_keyframe() {
 }
 
 bool KeyframeRecord::follow() {
-  const StartOutcome outcome = rotation_.measure(solver_.base_p_W()) ? record_frame() : StartOutcome::kTooFew;
+  const StartOutcome outcome =
+      rotation_.measure(solver_.base_p_W(), tracking_.belief().share()) ? record_frame() : StartOutcome::kTooFew;
   switch (outcome) {
     case StartOutcome::kWait:
       wait();
@@ -97,7 +98,8 @@ Vec2 KeyframeRecord::pixel_of(const Match& match) const {
 
 StartOutcome KeyframeRecord::record_frame() {
   const Body& body = motion_.body();
-  solver_.begin_frame(body.q_WC, body.p_W, frame_.report.t_ns);
+  const bool held = second_.given && second_.is_frame(frame_.report.t_ns);
+  solver_.begin_frame(body.q_WC, body.p_W, frame_.report.t_ns, held);
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     // A match that the last depths reject may fit the next ones, and the adjustment is robust.

@@ -163,7 +163,7 @@ void KeyframeStart::add_target(int keyframe, const TargetSighting& sighting) {
     map_.keyframes.set_pixel(keyframe, row, z);
     map_.point(row).pixel = z;
     ++report.inliers;
-    frame_.add({row, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, z, Mat2::Zero(), z, Scalar(0)});
+    frame_.add({row, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, false, z, Mat2::Zero(), z, Scalar(0)});
   }
   report.new_features = 0;
   report.attempts = report.matches = report.inliers;

@@ -21,18 +21,24 @@ bool RotationTracking::layout(Arena& arena) {
   return arena.ok();
 }
 
-/// Where the image as a whole has moved, which is known better than the motion; where that finds too few, about where the motion has them.
-/// Returns how many are found.
-int RotationTracking::find_points() {
+/// Lists all points, and searches for them. Returns how many are found.
+int RotationTracking::search(bool follows) {
   const Scalar depth = settings_.start_depth;
   PosePrior at = prior_of(motion_);
-  const int listed = search_.list_unplaced(at, depth);
-  at.follows = search_.find_followed();
-  const int found = search_.search(0, 0, listed, at, depth);
-  if (!at.follows || found >= settings_.min_inliers) return found;
+  at.follows = follows;
   frame_.forget_searches();
-  at.follows = false;
   return search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
+}
+
+/// Where the image as a whole has moved, which is known better than the motion. What moves before the camera may have taken it along: where
+/// few are found, about where the motion has them as well, and the better counts. Returns how many are found.
+int RotationTracking::find_points(const FindShare& share) {
+  search_.list_unplaced(prior_of(motion_), settings_.start_depth);
+  const bool follows = search_.find_followed();
+  const int found = search(follows);
+  if (!follows || !share.is_unlikely(frame_.report.attempts, found)) return found;
+  const int by_motion = search(false);
+  return by_motion >= found ? by_motion : search(true);
 }
 
 /// Rays and pixels of what was found. Returns how many.
@@ -48,8 +54,8 @@ int RotationTracking::list_rays() {
   return count;
 }
 
-bool RotationTracking::measure(const Vec3& base_W) {
-  const int found = find_points();
+bool RotationTracking::measure(const Vec3& base_W, const FindShare& share) {
+  const int found = find_points(share);
   if (found < settings_.min_inliers) return false;
   Quat q_WC = motion_.body().q_WC;
   const int count = list_rays();

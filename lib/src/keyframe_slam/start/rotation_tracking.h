@@ -17,11 +17,12 @@ class RotationTracking {
 
   /// Finds points about where they were last, as if the camera had only rotated. Updates the body with the pose fitted to them about the
   /// rotation that explains the image best, and accepts those that are within a few times the typical parallax of that rotation. base_W:
-  /// place of the record's first frame. False: too few.
-  bool measure(const Vec3& base_W);
+  /// place of the record's first frame; share: of the points that earlier frames found. False: too few.
+  bool measure(const Vec3& base_W, const FindShare& share);
 
  private:
-  int find_points();
+  int search(bool follows);
+  int find_points(const FindShare& share);
   int list_rays();
   void correct_body(int found, const Quat& q_WC, const Vec3& p_W);
 

@@ -17,7 +17,8 @@ int add_at(int keyframe, const Body& body, Scalar depth, const Vec2& pixel, Keyf
 }
 
 void note_new(const KeyframeMap& map, int i, const Vec2& pixel, Frame* frame) {
-  frame->add({i, map.feature(i).id, MatchStatus::kNew, map.kind(i), false, pixel, Mat2::Zero(), pixel, Scalar(0)});
+  frame->add(
+      {i, map.feature(i).id, MatchStatus::kNew, map.kind(i), false, false, pixel, Mat2::Zero(), pixel, Scalar(0)});
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Ma
   if (is_wide && inliers > 0 && search_.has_image() && look_again(about, pose, information, &moving))
     inliers = pose_.find(found_, moving, pose, information);
   *consensus = pose_.consensus(inliers, found_, about, *pose, *information);
+  note_paired(frame_, belief_.share(), consensus);
   if (inliers > 0) pose_.weigh_lens(found_, *pose, consensus);
   frame_.note_consensus(inliers);
   return inliers;
@@ -255,6 +256,7 @@ void KeyframeTracking::fit_all(int found, const PosePrior& prior, Scalar median_
   const int inliers = pose_.fit(found, prior, median_depth, open, &pose, &information);
   PosePrior at;
   PoseConsensus consensus = pose_.consensus(inliers, found, prior, pose, information);
+  note_paired(frame_, belief_.share(), &consensus);
   if (inliers > 0) pose_.weigh_lens(found, pose, &consensus);
   if (!is_believed(consensus) || !apply(pose, information, &at)) return;
   for (int c = 0; c < found; ++c) {

@@ -64,8 +64,8 @@ int PointSearch::list(const PosePrior& at, bool placed, Scalar depth) {
     const Mat2 innovation = innovation_of(expected);
     const bool is_inside = is_in_image(settings_.camera, expected.pixel, static_cast<Scalar>(settings_.border_px));
     if (!is_inside || !is_covariance(innovation)) continue;
-    const int match = frame_.add(
-        {i, f.id, MatchStatus::kMissed, map_.kind(i), false, expected.pixel, innovation, Vec2::Zero(), Scalar(0)});
+    const int match = frame_.add({i, f.id, MatchStatus::kMissed, map_.kind(i), false, false, expected.pixel, innovation,
+                                  Vec2::Zero(), Scalar(0)});
     point_[first + count++] = {match, Mat2::Identity(), Scalar(0)};
   }
   std::sort(point_ + first, point_ + first + count, [&](const SearchedPoint& a, const SearchedPoint& b) {

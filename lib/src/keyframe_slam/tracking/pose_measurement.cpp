@@ -98,12 +98,15 @@ PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior
                                          const Mat6& information) const {
   PoseConsensus consensus;
   consensus.searched = frame_.report.attempts;
-  consensus.of_all_points = true;
+  frame_.forget_agreement();
   if (inliers == 0) return consensus;
   consensus.inliers = inliers;
   consensus.log_density = log_density(map_.camera(), &pose_.match(0), found, pose_.inliers(), prior, pose, information);
-  for (int c = 0; c < found; ++c)
-    if (pose_.is_inlier(c)) consensus.log_chance += log_chance_density(search_.point(c).searched);
+  for (int c = 0; c < found; ++c) {
+    if (!pose_.is_inlier(c)) continue;
+    frame_.match(search_.point(c).match).agrees = true;
+    consensus.log_chance += log_chance_density(search_.point(c).searched);
+  }
   return consensus;
 }
 

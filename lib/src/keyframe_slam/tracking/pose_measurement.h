@@ -26,7 +26,7 @@ class PoseMeasurement {
   /// points without one. shared: how many these are; their depths may be wrong together, so that their mean is known no better than one of
   /// them. 0: their median is the unit of length, and each is wrong by itself. Returns the number of inliers.
   int fit(int found, const PosePrior& prior, Scalar depth, int shared, CameraPose* pose, Mat6* information);
-  /// Consensus of this frame's searches for the pose of the last find() or fit(), about the same prior.
+  /// Consensus of this frame's searches for the pose of the last find() or fit(), about the same prior. Notes which matches agree with it.
   PoseConsensus consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
                           const Mat6& information) const;
 
