@@ -73,7 +73,6 @@ inline constexpr float kIncomparable = 1000;  ///< subtracted from the rate of i
 inline constexpr int kScouts = 12;            ///< candidates that are measured first when the pose is uncertain
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
-inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the image
 inline constexpr int kSettled = 5;     ///< measurements of a feature whose residuals are those of its matches
 inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the image
 inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate, above which chance lets those pass

@@ -38,9 +38,9 @@ bool KeyframeMapping::wants_keyframe(bool young, Scalar median_depth) const {
   const Scalar turned = body.q_WC.angularDistance(last.q_WC);
   int inliers = 0;
   for (int t = 0; t < frame_.match_count(); ++t) inliers += frame_.match(t).status == MatchStatus::kInlier ? 1 : 0;
-  // A record that goes on makes the others itself.
+  // A record that still gets better makes the others itself.
   return moved > kKeyframeShift || turned > kKeyframeTurn ||
-         ((!young || map_.keyframes.count() > 1) && !record_.progress().recording &&
+         ((!young || map_.keyframes.count() > 1) && !record_.is_improving() &&
           static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }

@@ -101,22 +101,17 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   int finest;
   if (!choose_level(task, &A, &finest)) return outcome;
   const SourcePatch& patch = task.appearance->patch;
-  outcome.comparable = true;
 
   int level = finest;
   const Scalar radius = std::sqrt(task.gate * largest_eigenvalue(task.innovation));
   while (level + 1 < pyramid_.levels && radius > kSearchRadius * static_cast<Scalar>(1 << level)) ++level;
 
   float warped[kWarpSize * kWarpSize];
-  if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
-    // The source patch is too small for this level: search at the finest one, as far as that reaches. At a coarser one a repeated texture
-    // is taken for its neighbour (lib/docs/lab/2026-11/matching.md).
-    level = finest;
-    if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
-      outcome.comparable = false;
-      return outcome;
-    }
-  }
+  const auto warp_at = [&](int l) { return warp_template(patch, A * static_cast<Scalar>(1 << l), kWarpSize, warped); };
+  // Where the source patch is too small for that level, the coarsest that it has a template for, as far as that reaches.
+  outcome.comparable = warp_at(level);
+  while (!outcome.comparable && level > finest) outcome.comparable = warp_at(--level);
+  if (!outcome.comparable) return outcome;
   SearchTemplate pattern;
   make_search_template(warped, kWarpSize, &pattern);
   SearchEllipse ellipse;
@@ -144,7 +139,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
       outcome.noise = aligned.covariance() * (outcome.level_scale * outcome.level_scale);
       outcome.score = aligned.zncc;
     }
-    if (level == finest || !warp_template(patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) break;
+    if (level == finest || !warp_at(level - 1)) break;
     position = Vec2((position.x() + Scalar(0.25)) * Scalar(2), (position.y() + Scalar(0.25)) * Scalar(2));
   }
   return outcome;

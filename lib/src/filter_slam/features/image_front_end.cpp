@@ -35,13 +35,14 @@ UpdateOutcome ImageFrontEnd::measure(MeasureMode mode) {
   hypotheses_.begin();
   outcome_ = UpdateOutcome();
   listed_ = list_candidates();
-  const bool followed = !mode.is_vague && measure_listed(mode, false, mode.starts);
+  const bool followed = mode.starts && !mode.is_vague && search_.find_followed(listed_);
+  if (!mode.is_vague) measure_listed(mode, followed);
   if (frame_.report.inliers == 0 && (followed || search_.find_followed(listed_))) {
     if (!mode.is_vague) {
       hypotheses_.add();
       listed_ = list_candidates();
     }
-    measure_listed(mode, !followed, false);
+    measure_listed(mode, !followed);
   }
   return outcome_;
 }
@@ -56,17 +57,12 @@ int ImageFrontEnd::list_candidates() {
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used. follows: searches go about the places where the picture as a whole has gone; may_follow: where few of those first ones
-/// are found, they do. Returns whether they did.
-bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows, bool may_follow) {
+/// anything is used. follows: searches go about the places where the picture as a whole has gone.
+void ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
   const SearchMode search = {follows, mode.parallax_lasts};
   const int count = listed_;
   const int scouts = search_.widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search_.search(0, scouts > 0 ? scouts : count, search);
-  if (may_follow && Scalar(found) < kFewFound * Scalar(frame_.report.attempts) && search_.find_followed(count)) {
-    listed_ = list_candidates();
-    return measure_listed(mode, true, false);
-  }
   const int scouted = frame_.report.attempts;
   if (scouts > 0) {
     const bool used = update_with_consensus({0, found, scouted, false, follows}, mode);
@@ -77,13 +73,12 @@ bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows, bool m
     const int more = search_.search(scouts, count - scouts, search);
     if (used) {
       update_with_consensus({scouts, more, frame_.report.attempts - scouted, true, follows}, mode);
-      return follows;
+      return;
     }
     for (int k = 0; k < more; ++k, ++found)
       if (found != scouts + k) update_.swap(found, scouts + k);
   }
   update_with_consensus({0, found, frame_.report.attempts, true, follows}, mode);
-  return follows;
 }
 
 /// Finds the consensus of the matches of a range, and updates the filter with it. False, with nothing used, where its evidence is not

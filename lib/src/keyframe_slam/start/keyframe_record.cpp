@@ -79,8 +79,12 @@ bool KeyframeRecord::improve() {
   return true;
 }
 
+bool KeyframeRecord::is_improving() const {
+  return progress().recording && !(progress().depth_known && solved_before_ > kPatience);
+}
+
 void KeyframeRecord::note_keyframe() {
-  if (progress().depth_known && solved_before_ > kPatience) solver_.init();
+  if (progress().depth_known && !is_improving()) solver_.init();
 }
 
 /// Of a match of the record, at the frame's time. An accepted one has it already.

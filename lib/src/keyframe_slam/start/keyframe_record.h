@@ -38,7 +38,9 @@ class KeyframeRecord {
   bool follow();
   /// A tracked frame after the depths are known: records it. True: the record has better depths, and this frame is a keyframe.
   bool improve();
-  /// The camera has moved far enough for a keyframe. A record that has had no better solution for long is over; its depths stay.
+  /// A record is under way that may still get a better solution: it waits for its first one, or has had one not long ago.
+  bool is_improving() const;
+  /// A keyframe is made. A record that improves no more is over; its depths stay.
   void note_keyframe();
 
   void carry(Archive& archive);  ///< base/archive.h

@@ -21,17 +21,18 @@ bool RotationTracking::layout(Arena& arena) {
   return arena.ok();
 }
 
+/// Where the image as a whole has moved, which is known better than the motion; where that finds too few, about where the motion has them.
 /// Returns how many are found.
 int RotationTracking::find_points() {
   const Scalar depth = settings_.start_depth;
   PosePrior at = prior_of(motion_);
-  int found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
-  if (kMinFound * found < frame_.report.attempts && search_.find_followed()) {
-    frame_.forget_searches();
-    at.follows = true;
-    found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
-  }
-  return found;
+  const int listed = search_.list_unplaced(at, depth);
+  at.follows = search_.find_followed();
+  const int found = search_.search(0, 0, listed, at, depth);
+  if (!at.follows || found >= settings_.min_inliers) return found;
+  frame_.forget_searches();
+  at.follows = false;
+  return search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
 }
 
 /// Rays and pixels of what was found. Returns how many.

@@ -15,7 +15,6 @@ inline constexpr Scalar kPositionSigma = Scalar(0.1);   ///< [depths] while noth
 inline constexpr Scalar kSpeedSigma = Scalar(0.2);      ///< [depths/s] of the speed from a record
 inline constexpr int kPatience = 8;     ///< frames without a better solution that end a record at the next keyframe
 inline constexpr int kSpeedFrames = 3;  ///< that give it
-inline constexpr int kMinFound = 2;     ///< one in so many points is found without following the picture
 }  // namespace keyframe_start
 
 /// A second pose from the caller, which fixes the scale.
