@@ -28,8 +28,7 @@ void PlaceMaker::follow(const CameraView& view, Scalar depth, KeptPlace* scratch
   }
   drop();
   for (const int p : used_entries(places_))
-    if (view_distance2(view.q_WC, view.c_W, depth, places_[p].q_WK, places_[p].p_WK, places_[p].depth) < apart2)
-      return;
+    if (view_distance2(view.q_WC, view.c_W, depth, places_[p].q_WK, places_[p].p_WK, places_[p].depth) < apart2) return;
   if (filter_.room() < kRows && !features_.make_rows(kRows, frame_.report.t_ns)) return;
   data_.camera = filter_.add_reference_camera();
   if (data_.camera < 0) return;
