@@ -1,5 +1,6 @@
 // Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are. Where the map begins
 // again with them, their plane goes on.
+#include "filter_slam/start/walls_apart.h"
 #include "same.h"
 #include "support/plane_keeper_bench.h"
 
@@ -18,6 +19,7 @@ struct Table : PlaneKeeperBench {
   Vec3 truth[kPoints];
   int entry[kPoints];
   int plane = -1;
+  Scalar size = 1;  ///< of the world, against what see() is told
 
   Table(SeededRandom& random, int off, Scalar distance) {
     for (int i = 0; i < kPoints; ++i)
@@ -61,7 +63,7 @@ struct Table : PlaneKeeperBench {
 
   void see(Scalar aside, SeededRandom& random, double sigma_px) {
     Body body;
-    body.p_W = Vec3(aside, Scalar(-0.3) * aside, 0);
+    body.p_W = size * Vec3(aside, Scalar(-0.3) * aside, 0);
     filter->set_mean(body);
     frame.begin(33000000 * (frame.report.frames + 1));
     for (int i = 0; i < kPoints; ++i) {
@@ -78,6 +80,14 @@ struct Table : PlaneKeeperBench {
                  Scalar(1)});
     }
     planes.maintain();
+  }
+  /// All lengths become s times as large.
+  void scale(Scalar s) {
+    filter->join_planes_apart(s, Vec3::Zero());
+    scale_tables(s, Vec3::Zero(), &map);
+    planes.scale(s);
+    for (Vec3& p : truth) p *= s;
+    size *= s;
   }
   /// The map begins again with the same features, as points: where they are, or each so much of its depth farther or nearer in turn.
   void begin_again(Scalar apart) {
@@ -161,6 +171,25 @@ void test_points_should_stay_on_a_plane_on_which_they_lie() {
   }
 }
 
+/// What pixels said before of where a point is holds in the new unit of length.
+void test_plane_should_keep_its_place_in_the_map_when_lengths_are_scaled() {
+  for (const Scalar scale : {Scalar(0.8), Scalar(1.3)}) {
+    SeededRandom random(1);
+    Table table(random, 3, 1);
+    int k = 0;
+    for (; k < 4; ++k) table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.1);
+    TEST_ASSERT_EQUAL_INT(0, table.map.planes[0].outliers);
+    table.scale(scale);
+    for (; k <= 60 && table.map.planes[0].outliers == 0; ++k)
+      table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.1);
+    for (int i = 0; i < kPoints; ++i) {
+      TEST_ASSERT_SAME((i >= 3), table.is_folded(i));
+      const Vec3 p_W = table.filter->point(table.map.features[table.entry[i]].slot);
+      TEST_ASSERT_TRUE((p_W - table.truth[i]).norm() < 0.02);
+    }
+  }
+}
+
 void test_plane_should_go_on_when_the_map_begins_again_with_its_points() {
   SeededRandom random(1);
   Table table(random, 0, 1);
@@ -192,6 +221,7 @@ int main() {
   RUN_TEST(test_plane_should_turn_to_where_most_of_its_points_are);
   RUN_TEST(test_plane_should_turn_to_where_features_on_trial_show_it_to_be);
   RUN_TEST(test_points_should_stay_on_a_plane_on_which_they_lie);
+  RUN_TEST(test_plane_should_keep_its_place_in_the_map_when_lengths_are_scaled);
   RUN_TEST(test_plane_should_go_on_when_the_map_begins_again_with_its_points);
   RUN_TEST(test_plane_should_be_given_up_when_the_map_begins_again_without_it);
   return UNITY_END();

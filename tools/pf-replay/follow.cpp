@@ -6,6 +6,7 @@
 #include "context.h"
 #include "record.h"
 #include "session.h"
+#include "sim/random.h"
 #include "sim/trajectory.h"
 
 namespace replay {
@@ -81,7 +82,7 @@ void compare_state(bool other, int* run, Distance* d) {
 
 }  // namespace
 
-bool follow(const std::string& file, Distance* d) {
+bool follow(const std::string& file, double sigma_px, Distance* d) {
   Tape tape(file, false);
   int frames = 0;
   std::uint64_t seed = 0;
@@ -89,7 +90,7 @@ bool follow(const std::string& file, Distance* d) {
   if (!tape.ok() || !tape.read(frames) || !tape.read(seed) || !tape.read(planes)) return false;
   const pfsim::BedOptions options = session_bed(frames);
   const pf_config_t config = session_config(options, planes);
-  const pfsim::Bed bed(options, config, seed);  // for the start alone
+  pfsim::Bed bed(options, config, seed);  // for the start and the truth alone
   const pfsim::Context context(config);
   pf_slam_t* slam = context.slam;
   if (slam == nullptr || pf_start_from_target(slam, &bed.target()) != PF_OK ||
@@ -98,11 +99,17 @@ bool follow(const std::string& file, Distance* d) {
   }
   Frame frame;
   Decisions decisions;
+  pf::sim::Random noise(seed);
   double us = 0;
   int run = 0;
   for (int i = 0; i < frames; ++i) {
     if (!tape.read(frame)) return false;
-    if (i > 0) pf_push_control(slam, frame.dv_C, frame.dw_C);
+    if (i > 0) {
+      pf_push_control(slam, frame.dv_C, frame.dw_C);
+      bed.move(i, frame.dv_C, frame.dw_C);
+    }
+    for (pf_observation_t& o : frame.observations)
+      for (double& coordinate : o.pixel) coordinate += sigma_px * noise.normal();
     const auto begin = std::chrono::steady_clock::now();
     const pf_status_t status =
         pf_push_observations(slam, frame.t_ns, frame.observations.data(), frame.observations.size());
@@ -123,6 +130,8 @@ bool follow(const std::string& file, Distance* d) {
     compare_state(report.state_dim != frame.state_dim, &run, d);
     decisions.compare(frame, map_of(slam), d);
     compare(frame.pose, pose, d);
+    d->recorded.add(bed.truth().pose, frame.pose);
+    d->here.add(bed.truth().pose, pose);
     if (i % 1000 == 999) {
       std::fprintf(stderr, "\r%d of %d frames: %.3f sigma, sigma off by %.2f %%, %ld refused", i + 1, frames,
                    std::max(d->position, d->rotation), 100 * d->sigma, d->refused_again);
@@ -132,7 +141,10 @@ bool follow(const std::string& file, Distance* d) {
   d->us_per_frame = us / std::max(1, d->frames);
   std::vector<pf_feature_t> map;
   if (d->frames == frames && !tape.read(map)) return false;
-  compare(map, map_of(slam), d);
+  const std::vector<pf_feature_t> map_here = map_of(slam);
+  compare(map, map_here, d);
+  d->recorded.add(bed.points(), map);
+  d->here.add(bed.points(), map_here);
   return true;
 }
 

@@ -10,6 +10,14 @@
 #include "planefold_platform/version.h"
 #include "record.h"
 
+namespace {
+
+nlohmann::ordered_json of_both(const replay::Distance& d, double (replay::Quality::*number)() const) {
+  return {{"recorded", (d.recorded.*number)()}, {"here", (d.here.*number)()}};
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app{"One session in double, and the same one in float"};
   app.require_subcommand(1);
@@ -26,9 +34,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   record->add_option("--seed", seed, "of the world, the motion and the noise")->capture_default_str();
   record->add_flag("--planes", planes, "fold points into planes");
+  double sigma_px = 0;
   CLI::App* follow = app.add_subcommand("follow", "run on the accepted observations and compare");
   follow->add_option("file", file, "tape to read")->required();
   follow->add_option("--json", json, "file for the result")->check(pf::tools::writable_file());
+  follow->add_option("--noise-px", sigma_px, "standard deviation of noise that the pixels get beside their own")
+      ->check(CLI::Range(0.0, 100.0));
   int code = 0;
   if (!pf::tools::parse_command_line(app, "pf-replay", argc, argv, code)) return code;
 
@@ -44,7 +55,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   replay::Distance d;
-  if (!replay::follow(file, &d)) {
+  if (!replay::follow(file, sigma_px, &d)) {
     std::fprintf(stderr, "pf-replay: '%s' is no tape; pf-replay record FILE writes one\n", file.c_str());
     return 1;
   }
@@ -72,6 +83,10 @@ int main(int argc, char** argv) {
                                          {"map_points_of_another_kind", d.other_kind},
                                          {"map_position_in_sigma", d.map_position},
                                          {"map_sigma_relative", d.map_sigma},
+                                         {"nees_pose", of_both(d, &replay::Quality::nees_pose)},
+                                         {"camera_rmse_m", of_both(d, &replay::Quality::camera_rmse_m)},
+                                         {"camera_rmse_rad", of_both(d, &replay::Quality::camera_rmse_rad)},
+                                         {"map_rmse_m", of_both(d, &replay::Quality::map_rmse_m)},
                                          {"us_per_frame", d.us_per_frame}};
   std::printf("%s\n", result.dump(2).c_str());
   if (!json.empty()) {

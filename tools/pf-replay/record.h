@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "quality.h"
+
 namespace replay {
 
 /// Run the session and keep, of every frame, what the library accepted and what it estimated.
@@ -34,9 +36,10 @@ struct Distance {
   int other_kind = 0;  ///< points at the end that are folded in one run and not in the other
   int folded = 0;      ///< points at the end that are folded in both
   double us_per_frame = 0;
+  Quality recorded, here;  ///< each run against the truth
 };
 
-/// False when the file cannot be read.
-bool follow(const std::string& file, Distance* distance);
+/// sigma_px: noise that the pixels get beside their own. False when the file cannot be read.
+bool follow(const std::string& file, double sigma_px, Distance* distance);
 
 }  // namespace replay

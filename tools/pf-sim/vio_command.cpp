@@ -67,11 +67,15 @@ double quantile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
+/// Of the runs that have the number; judged says how many these are.
 json of_all(const VioSummary* s, int seeds, double VioSummary::*field) {
   std::vector<double> values;
   for (int i = 0; i < seeds; ++i)
     if (s[i].*field >= 0) values.push_back(s[i].*field);
-  return {{"median", quantile(values, 0.5)}, {"p95", quantile(values, 0.95)}, {"max", quantile(values, 1)}};
+  return {{"median", quantile(values, 0.5)},
+          {"p95", quantile(values, 0.95)},
+          {"max", quantile(values, 1)},
+          {"judged", values.size()}};
 }
 
 /// Share of the run averages of the pose NEES above the 97.5 % bound, by frame.

@@ -386,11 +386,11 @@ class Run {
     has_gauge_ = true;
   }
 
-  /// Relative error of the distances from the camera to the points that are known, with its sign; the median.
+  /// Relative error of the distances from the camera to the points that have a place, those on planes too; the median.
   double scale_error() const {
     if (o_.rendered && !o_.moving)
       return squares_ > 0 ? std::fabs(along_ / squares_ - 1) : -1;  // of the way, since it knows no points
-    std::vector<pf_feature_t> features(200);
+    std::vector<pf_feature_t> features(1000);
     std::size_t count = 0;
     pf_get_features(context_.slam, features.data(), features.size(), &count);
     pf_pose_t pose;
@@ -402,7 +402,7 @@ class Run {
       const auto R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
       std::vector<Vec3> p_C;
       for (const pf_feature_t& f : features)
-        if (f.kind == PF_FEATURE_POINT) p_C.push_back(R_CW * (Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p));
+        if (f.kind != PF_FEATURE_INVERSE_DEPTH) p_C.push_back(R_CW * (Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p));
       const Pose here{first_.R_WC * last_.R_WC, first_.R_WC * last_.p_WC + first_.p_WC};
       const std::vector<double> truth = world_.distances(here, p_C);
       for (std::size_t i = 0; i < p_C.size(); ++i)
@@ -410,7 +410,7 @@ class Run {
       return errors.size() < 5 ? -1 : std::fabs(median(errors));
     }
     for (const pf_feature_t& f : features) {
-      if (f.kind != PF_FEATURE_POINT) continue;
+      if (f.kind == PF_FEATURE_INVERSE_DEPTH) continue;
       const Vec3 point = first_.R_WC.transposed() * (world_.points()[f.external_id] - first_.p_WC);
       errors.push_back((Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p).norm() / (point - last_.p_WC).norm() - 1);
     }

@@ -58,8 +58,7 @@ Scalar FindShare::log_probability(int searched, int inliers) const {
 }
 
 bool FindShare::is_unlikely(int searched, int inliers) const {
-  return static_cast<Scalar>(inliers) < mean_ * static_cast<Scalar>(searched) &&
-         log_usual(searched, inliers) < log_any_share(searched, inliers);
+  return is_less(searched, inliers) && log_usual(searched, inliers) < log_any_share(searched, inliers);
 }
 
 Scalar FindShare::in_frame(int searched, int inliers) const {

@@ -43,6 +43,10 @@ class FindShare {
   ///
   ///   ln(p B(a + k, b + n - k) / B(a, b) + (1 - p) B(k + 1, n - k + 1)),   a = kWeight m,  b = kWeight (1 - m)
   Scalar log_probability(int searched, int inliers) const;
+  /// Fewer are found than in earlier frames.
+  bool is_less(int searched, int inliers) const {
+    return static_cast<Scalar>(inliers) < mean_ * static_cast<Scalar>(searched);
+  }
   /// True where so few are found that any share is more likely than that of earlier frames: this image is less sharp, or the pose about
   /// which they were searched for is wrong, and those found are a part that agrees by chance.
   bool is_unlikely(int searched, int inliers) const;

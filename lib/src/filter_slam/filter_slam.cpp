@@ -187,7 +187,13 @@ bool FilterSlam::look_for_scale() {
   if (!settings_.inertial || upkeep_.is_in_loaded_map()) return false;  // lengths are those of the map
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
   const Scalar correlation = data_.image_usable ? images_.noise().correlation_frames() : Scalar(1);
+  const Scalar before = frame_.correction.T.s;
   const ScaleChange change = unit_.look_for_scale(data_.median_depth, correlation);
+  if (change == ScaleChange::kRescaled) {
+    const Scalar scale = frame_.correction.T.s / before;
+    upkeep_.planes().scale(scale);
+    data_.median_depth *= scale;
+  }
   if (change == ScaleChange::kNewMap || change == ScaleChange::kRescaled) {
     images_.relocaliser().init();
     upkeep_.forget_places();

@@ -67,7 +67,7 @@ int paired_inliers(const Frame& frame) {
 }
 
 void note_paired(const Frame& frame, const FindShare& share, PoseConsensus* consensus) {
-  if (share.is_unlikely(consensus->searched, consensus->inliers)) consensus->paired = paired_inliers(frame);
+  if (share.is_less(consensus->searched, consensus->inliers)) consensus->paired = paired_inliers(frame);
 }
 
 Scalar PoseHypotheses::evidence(const PoseConsensus& consensus) const {

@@ -48,7 +48,7 @@ void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* cons
 /// for in this frame, by their predicted pixels. Under the right pose any feature may be missed; in a wrong place the part that looks like
 /// the right one is found whole.
 int paired_inliers(const Frame& frame);
-/// Counts them for a consensus that finds so few features that they may be a part which looks like another one.
+/// Counts them for a consensus that finds fewer features than earlier frames: it may be a part that looks like another one.
 void note_paired(const Frame& frame, const FindShare& share, PoseConsensus* consensus);
 
 /// The hypotheses of a frame that have been tried. n of them divide the odds of each by n.

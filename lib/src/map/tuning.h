@@ -40,7 +40,7 @@ namespace plane_doubt {
 inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
 inline constexpr int kMinRefused = 8;               ///< points, before a wall is rejected or accepted again
 inline constexpr int kRefusedShare = 4;       ///< rejected points for each on the wall, above which it is rejected
-inline constexpr int kCells = 5;              ///< along each side of the image
+static constexpr int kCells = 5;              ///< along each side of the image
 inline constexpr Scalar kDoubtedPrior = 100;  ///< times its covariance that a rejected wall's prior gets
 }  // namespace plane_doubt
 

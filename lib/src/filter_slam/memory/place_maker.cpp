@@ -18,18 +18,17 @@ void PlaceMaker::drop() {
 
 void PlaceMaker::follow(const CameraView& view, Scalar depth, KeptPlace* scratch) {
   constexpr int kRows = 6;
-  constexpr Scalar kApart2 = tuning::place::kApart * tuning::place::kApart;
+  const Scalar apart2 = tuning::place::kApart * tuning::place::kApart;
   if (has_camera() && filter_.block_is_sound(data_.camera)) {
     const Block& camera = filter_.state().block[data_.camera];
     if (view_distance2(view.q_WC, view.c_W, depth, ReferenceCamera::q_WC(camera), ReferenceCamera::p_WC(camera),
-                       data_.depth) < kApart2)
+                       data_.depth) < apart2)
       return;
     if (make(scratch)) places_.keep(*scratch);
   }
   drop();
   for (const int p : used_entries(places_))
-    if (view_distance2(view.q_WC, view.c_W, depth, places_[p].q_WK, places_[p].p_WK, places_[p].depth) < kApart2)
-      return;
+    if (view_distance2(view.q_WC, view.c_W, depth, places_[p].q_WK, places_[p].p_WK, places_[p].depth) < apart2) return;
   if (filter_.room() < kRows && !features_.make_rows(kRows, frame_.report.t_ns)) return;
   data_.camera = filter_.add_reference_camera();
   if (data_.camera < 0) return;
@@ -73,7 +72,7 @@ bool PlaceMaker::is_taken(std::uint32_t id) const {
 
 /// False where the feature is not worth keeping, or the camera does not see it.
 bool PlaceMaker::make_point(int i, PlacePoint* out) const {
-  constexpr Scalar kMost = tuning::place::kMaxDepthSigma * tuning::place::kMaxDepthSigma;
+  const Scalar most = tuning::place::kMaxDepthSigma * tuning::place::kMaxDepthSigma;
   const Feature& f = map_.features[i];
   if (!f.has_appearance || f.is_target || f.was_missed || f.on_trial) return false;
   Vec3 x_K;
@@ -83,7 +82,7 @@ bool PlaceMaker::make_point(int i, PlacePoint* out) const {
       !is_in_image(settings_.camera, pixel, static_cast<Scalar>(settings_.border_px)))
     return false;
   const Scalar along = x_K.dot(C * x_K) / x_K.squaredNorm();
-  if (!(along < kMost * x_K.squaredNorm()) || !(C(0, 0) > Scalar(0) && C(1, 1) > Scalar(0) && C(2, 2) > Scalar(0)))
+  if (!(along < most * x_K.squaredNorm()) || !(C(0, 0) > Scalar(0) && C(1, 1) > Scalar(0) && C(2, 2) > Scalar(0)))
     return false;
   const Block& camera = filter_.state().block[data_.camera];
   const Quat q_KW = ReferenceCamera::q_WC(camera).conjugate();

@@ -88,12 +88,23 @@ void OwnPlaces::add(const Match& match, const CameraAt& camera) {
   const Mat3 R_CW = camera.q_WC.conjugate().toRotationMatrix();
   if (!project(filter_.lens(), Vec3(R_CW * (x + s * d - camera.p_W)), &z, &J_z_p)) return;
   const Vec2 r = match.measured - z, J = J_z_p * (R_CW * d);
-  if (r.squaredNorm() > kElsewhere * kElsewhere) {  // the world has been given another size or place
+  if (r.squaredNorm() > kElsewhere * kElsewhere) {  // the world has been given another place
     own.plane = 0;
     return;
   }
   own.N += static_cast<float>(J.squaredNorm());
   own.b += static_cast<float>(J.dot(r + J * s));
+}
+
+void OwnPlaces::scale(Scalar s) {
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    Own& own = own_[i];
+    put_vector(s * vector(own.place_W), own.place_W);
+    put_vector(s * vector(own.ray_W), own.ray_W);
+    if (is_lost(i)) continue;
+    own.N /= static_cast<float>(s * s);
+    own.b /= static_cast<float>(s);
+  }
 }
 
 void OwnPlaces::forget(int plane_slot) {

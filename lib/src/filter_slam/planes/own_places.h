@@ -35,6 +35,8 @@ class OwnPlaces {
   std::uint32_t lost_plane(int feature) const;
   /// It is not looked for any more.
   void give_up(std::uint32_t plane);
+  /// The map's lengths are multiplied by s, about W's origin.
+  void scale(Scalar s);
   /// Begins again with the points of a plane, which has moved.
   void forget(int plane_slot);
   /// Place of a folded feature, and the variance of its distance from a plane with this normal, for pixels that are known to one pixel.

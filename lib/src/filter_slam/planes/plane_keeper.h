@@ -36,6 +36,8 @@ class PlaneKeeper {
   /// Walls are compared with the map for the first time: planes that were found in a map of another size end, since their points would
   /// not fold into walls, and those before a wall fold into it.
   void meet_walls();
+  /// The map's lengths have been multiplied by s, about W's origin: what is kept of lengths beside filter and map follows.
+  void scale(Scalar s) { places_.scale(s); }
 
   /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded. may_doubt: the map's
   /// depths are known well enough to reject a wall.
