@@ -43,9 +43,10 @@ LIBRARY = {
     "keyframe_slam/tracking": KEYFRAME_MEMORY,
     "keyframe_slam/adjustment": KEYFRAME_TRACKING,
     "keyframe_slam/walls": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
+    "keyframe_slam/loops": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
     "keyframe_slam/start": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
     "keyframe_slam/inertial": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "inertial"],
-    "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/walls", "keyframe_slam/start", "keyframe_slam/inertial", "inertial"],
+    "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/walls", "keyframe_slam/loops", "keyframe_slam/start", "keyframe_slam/inertial", "inertial"],
     "session": UNIT + ["memory", "filter_slam", "keyframe_slam"],
     "api": FRAME + ["session"],
 }

@@ -309,9 +309,10 @@ typedef struct pf_config {
      * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
     int32_t mask;
     /* Places: cameras that are kept with up to 24 points and their appearance, by which a lost
-     * camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15 kB each and 90
-     * kB for all; -1: 16 with PF_BACKEND_WINDOW, and none with the filter. None in any case with
-     * map.masks. Default -1 */
+     * camera finds itself, and of which a saved map is made (MAPS). With PF_BACKEND_WINDOW a camera
+     * that comes back to one corrects what the map has drifted since. 0 .. 200, of 16 kB each and
+     * 150 kB for all (filter: 15 and 90); -1: 16 with PF_BACKEND_WINDOW, and none with the filter.
+     * None in any case with map.masks. Default -1 */
     int32_t max_places;
     /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 1.5 kB each. Default 8 */
     int32_t max_anchors;

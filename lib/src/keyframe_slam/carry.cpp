@@ -6,6 +6,7 @@ namespace pf {
 void KeyframeMapping::carry(Archive& archive) {
   planes_.carry(archive);
   adjustment_.carry(archive);
+  loops_.carry(archive);
   saving_.carry(archive);
 }
 

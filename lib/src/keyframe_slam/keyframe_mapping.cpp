@@ -58,6 +58,7 @@ void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   map_.keyframes[keyframe].w_C = motion_.body().w_C;
   if (young) triangulate_inliers(young);
   adjust();
+  loops_.add_keyframe(adjustment_);
   const CameraView now = motion_.view();
   frame_.correction.add(Similarity::between(before.q_WC, before.c_W, now.q_WC, now.c_W));
   if (map_.keyframes.began_elsewhere()) keeper_.bring_near(motion_.view(), median_depth, 1);

@@ -2,6 +2,7 @@
 
 #include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
+#include "keyframe_slam/loops/loops.h"
 #include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/planes/plane_upkeep.h"
 #include "keyframe_slam/start/keyframe_record.h"
@@ -19,7 +20,8 @@ class KeyframeMapping {
  public:
   KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
                   KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search, const GivenPixels& given,
-                  const PoseMeasurement& pose, KeyframeRecord& record, KeyframeRelocaliser& relocaliser)
+                  const PoseMeasurement& pose, KeyframeRecord& record, KeyframeRelocaliser& relocaliser,
+                  const PoseBelief& belief)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -32,15 +34,18 @@ class KeyframeMapping {
         record_(record),
         keeper_(relocaliser.keeper()),
         adjustment_(settings, map, planes, noise),
+        loops_(settings, map, planes, noise, search.images(), belief),
         saving_(settings, map, planes, keeper_) {}
 
   bool layout(Arena& arena) {
     saving_.layout(arena);
+    loops_.layout(arena);
     return adjustment_.layout(arena);
   }
   void init() {
     planes_.init();
     adjustment_.init();
+    loops_.init();
     saving_.init();
   }
 
@@ -53,6 +58,7 @@ class KeyframeMapping {
 
   KeyframeAdjustment& adjustment() { return adjustment_; }
   const KeyframeAdjustment& adjustment() const { return adjustment_; }
+  Loops& loops() { return loops_; }
   MapSaving& saving() { return saving_; }
   const MapSaving& saving() const { return saving_; }
 
@@ -76,6 +82,7 @@ class KeyframeMapping {
   KeyframeRecord& record_;
   PlaceKeeper& keeper_;
   KeyframeAdjustment adjustment_;
+  Loops loops_;
   MapSaving saving_;
 };
 

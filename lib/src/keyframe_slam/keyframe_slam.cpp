@@ -180,7 +180,11 @@ void KeyframeSlam::learn() {
   if (!tracked || is_keyframe || record_.progress().pending() || !data_.has_image) return;
   relocaliser_.note_view(data_.median_depth);
   const MapJoin join = relocaliser_.take_join();
-  if (join.map_id != 0) placement_.join(join, &data_.median_depth);
+  if (join.map_id != 0) return placement_.join(join, &data_.median_depth);
+  if (settings_.inertial || map_.tables().planes.has_known()) return;
+  relocaliser_.keeper().follow_keyframes();
+  const LoopClosure loop = mapping_.loops().look(motion_, data_.median_depth);
+  if (loop.place != 0) placement_.close_loop(loop, &data_.median_depth);
 }
 
 /// Returns the status of the frame.

@@ -32,7 +32,8 @@ class KeyframeSlam {
         anchors_{map.anchors, map_, planes_},
         unit_{settings, map_, frame_, noise_, imu, motion_},
         search_{settings, map_, planes_, frame_, noise_, given},
-        mapping_{settings, map_, frame_, motion_, planes_, noise_, search_, given, pose_, record_, relocaliser_} {}
+        mapping_{settings, map_,  frame_, motion_, planes_,      noise_,
+                 search_,  given, pose_,  record_, relocaliser_, tracking_.belief()} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 

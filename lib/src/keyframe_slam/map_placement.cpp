@@ -7,6 +7,7 @@
 #include "keyframe_slam/adjustment/move_window.h"
 #include "keyframe_slam/start/tuning.h"
 #include "keyframe_slam/tracking/tuning.h"
+#include "memory/tuning.h"
 
 namespace pf {
 
@@ -150,14 +151,40 @@ void MapPlacement::join(const MapJoin& join, Scalar* median_depth) {
                       fixed(join.T.s, 3));
 }
 
+void MapPlacement::close_loop(const LoopClosure& loop, Scalar* median_depth) {
+  const Similarity T = similarity_of(loop.x, loop.at_W);
+  Mat6 covariance;
+  Loops& loops = mapping_.loops();
+  if (!loops.close(loop, relocaliser_.keeper().taken(), &covariance)) return;
+  record_.init();
+  motion_.move(T);
+  frame_.correction.add(T);
+  mapping_.adjustment().move(T);
+  mapping_.adjustment().begin_at(covariance);
+  relocaliser_.move_each(T, [&](const Quat& q_WC, const Vec3& p_W) { return loops.near(q_WC, p_W, *median_depth); });
+  move_mark(loops.near(mark_.q_WC, mark_.p_W, *median_depth));
+  *median_depth *= T.s;
+  const auto place = static_cast<std::uint32_t>(loop.place);
+  if (relocaliser_.keeper().bring_back(place)) relocaliser_.keeper().bring_points(place);
+  relocaliser_.keeper().bring_near(motion_.view(), *median_depth, tuning::place::kMaxReturns);
+  settings_.hooks.say("map ", tracking_.map_id(), " comes back to place ", loop.place, ": moved by ",
+                      fixed((T.of(loop.at_W) - loop.at_W).norm(), 3), " and ", degrees(log_so3(T.q).norm()),
+                      " deg, scaled by ", fixed(T.s, 3));
+}
+
 void MapPlacement::move(const Similarity& T, Scalar* median_depth) {
   move_window(T, &map_, &planes_, &motion_);
   frame_.correction.add(T);
   mapping_.adjustment().move(T);
+  mapping_.loops().move(T);
   map_.tables().anchors.move(tracking_.map_id(), tracking_.map_id(), T);
   relocaliser_.move(T);
   unit_.move(T);
   *median_depth *= T.s;
+  move_mark(T);
+}
+
+void MapPlacement::move_mark(const Similarity& T) {
   mark_.q_WC = (T.q * mark_.q_WC).normalized();
   mark_.p_W = T.of(mark_.p_W);
   mark_.covariance = T.of_pose_covariance(mark_.covariance);

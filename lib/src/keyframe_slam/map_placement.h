@@ -72,6 +72,8 @@ class MapPlacement {
   MapOfUnit map_of_unit(Scalar median_depth) const;
   /// The map is joined to an earlier one: it goes on in that one's W and unit, under its id.
   void join(const MapJoin& join, Scalar* median_depth);
+  /// The camera is back at a place: the window goes to where that has it, and what was made in between by its share.
+  void close_loop(const LoopClosure& loop, Scalar* median_depth);
   /// The map has begun again with other poses, of which the newest keyframe has this frame's: anchors stay where they are before it.
   void keep_anchors(const CameraView& before, const CameraView& now) {
     anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
@@ -95,6 +97,7 @@ class MapPlacement {
  private:
   void move(const Similarity& T, Scalar* median_depth);
   void rename_map();
+  void move_mark(const Similarity& T);
 
   const Settings& settings_;
   KeyframeMap& map_;

@@ -75,6 +75,13 @@ Scalar view_distance2(const Quat& q_a, const Vec3& p_a, Scalar depth_a, const Qu
   return (p_a - p_b).squaredNorm() / (far * far) + 2 * (1 - z_a.dot(z_b)) / (kFarTurn * kFarTurn);
 }
 
+CameraView first_view_of(const KeptPlace& place, const PlacePoint& point) {
+  const auto number = [](float x) { return static_cast<Scalar>(x); };
+  const Quat q_KV(number(point.q_KV[0]), number(point.q_KV[1]), number(point.q_KV[2]), number(point.q_KV[3]));
+  const Vec3 c_K(number(point.c_K[0]), number(point.c_K[1]), number(point.c_K[2]));
+  return {(place.q_WK * q_KV).normalized(), place.p_WK + place.q_WK * c_K};
+}
+
 Mat3 PlacePoint::covariance_K() const {
   Mat3 C;
   for (int a = 0, n = 0; a < 3; ++a)

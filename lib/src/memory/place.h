@@ -65,6 +65,9 @@ Scalar median_depth(const KeptPlace& place);
 void crop_patch(const SourcePatch& from, PlacePatch* to);
 void restore_patch(const PlacePatch& from, SourcePatch* to);
 
+/// The view that the patch of a point is from.
+CameraView first_view_of(const KeptPlace& place, const PlacePoint& point);
+
 /// How far apart two views are, squared; 1 where they share about half of what they see:
 ///
 ///   D² = |p - p'|² / (kFarShift d)² + 2 (1 - z·z') / kFarTurn²          d: the smaller median depth, z: the directions of view

@@ -52,20 +52,22 @@ int PlaceTable::keep(const KeptPlace& place) {
 }
 
 void PlaceTable::move(const Similarity& T) {
-  const float f = static_cast<float>(T.s);
   for (const int i : used_entries(*this)) {
-    KeptPlace& place = place_[i];
-    if (place.map_id != 0) continue;
-    place.q_WK = (T.q * place.q_WK).normalized();
-    place.p_WK = T.of(place.p_WK);
-    place.covariance = T.of_pose_covariance(place.covariance);
-    place.depth *= T.s;
-    for (int k = 0; k < place.count; ++k) {
-      PlacePoint& point = place.point[k];
-      point.rho /= f;
-      for (float& c : point.covariance) c *= f * f;
-      for (float& c : point.c_K) c *= f;
-    }
+    if (is_present(i)) move(T, &place_[i]);
+  }
+}
+
+void PlaceTable::move(const Similarity& T, KeptPlace* place) {
+  const float f = static_cast<float>(T.s);
+  place->q_WK = (T.q * place->q_WK).normalized();
+  place->p_WK = T.of(place->p_WK);
+  place->covariance = T.of_pose_covariance(place->covariance);
+  place->depth *= T.s;
+  for (int k = 0; k < place->count; ++k) {
+    PlacePoint& point = place->point[k];
+    point.rho /= f;
+    for (float& c : point.covariance) c *= f * f;
+    for (float& c : point.c_K) c *= f;
   }
 }
 

@@ -58,6 +58,8 @@ class PlaceTable {
   int keep(const KeptPlace& place);
   /// All of W is moved. Places of other maps are in another W.
   void move(const Similarity& T);
+  /// One place is moved within W.
+  static void move(const Similarity& T, KeptPlace* place);
 
   /// A place comes back to the window as a keyframe.
   void note_return(int i) {

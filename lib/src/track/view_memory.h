@@ -36,6 +36,16 @@ class ViewMemory {
     }
   }
 
+  /// Each view is moved by a similarity of its own: correction(q_WC, p_W).
+  template <typename F>
+  void move_each(F&& correction) {
+    for (int i = 0; i < count_; ++i) {
+      const Similarity T = correction(view_[i].q_WC, view_[i].p_W);
+      view_[i].q_WC = (T.q * view_[i].q_WC).normalized();
+      view_[i].p_W = T.of(view_[i].p_W);
+    }
+  }
+
   /// Keeps the thumbnail of an image with its pose if no kept one is like it. A full memory replaces its oldest.
   void keep_if_new(const Pyramid& image, const Quat& q_WC, const Vec3& p_W);
   /// The kept view that correlates best with an image, turned as the image is against it. Score 0 without any.

@@ -16,10 +16,11 @@ void KeyframeAdjustment::carry(Archive& archive) {
   choice_.carry(archive);
   target_.carry(archive);
   archive.numbers(map_covariance_);
-  auto& [keyframes, is_determined, is_away, given_held, span] = shape_;
+  auto& [keyframes, is_determined, is_away, given_held, span, hangs_on] = shape_;
   archive.within(keyframes, 1, Archive::kMaxCount);
   archive.flags(is_determined, is_away);
   archive.numbers(given_held, span);
+  archive.counts(hangs_on);
 }
 
 }  // namespace pf

@@ -118,7 +118,9 @@ void KeyframeAdjustment::note_covariance(const Mat6& given_held) {
   const AdjustedPoses& poses = bundle_.poses;
   const int newest = poses.free - 1;
   map_covariance_ = given_held;
-  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0};
+  shape_ = {poses.seen_in, true, choice_.is_away(), given_held, 0, 0};
+  for (int c = 0; c < poses.seen_in; ++c)
+    if (c != newest) shape_.hangs_on = std::max(shape_.hangs_on, map_.keyframes[poses.keyframe[c]].number);
   const auto take_span = [&](int a, int b) {
     shape_.span = std::max(shape_.span, (poses.pose[a].p_W - poses.pose[b].p_W).norm());
   };

@@ -21,6 +21,7 @@ struct AdjustmentShape {
   bool is_away = false;            ///< the map's first keyframe is not connected with the newest one
   Mat6 given_held = Mat6::Zero();  ///< covariance of the newest keyframe's (theta, p), given those that were held fixed
   Scalar span = 0;                 ///< largest distance of two of these, or of one and the newest
+  int hangs_on = 0;                ///< number of the newest of the others; 0: none
 };
 
 /// What the map about the newest keyframe may have moved in W since the keyframe before.

@@ -6,9 +6,11 @@
 
 namespace pf {
 
-/// Moves all of the window: keyframes, points, places, planes, and the body.
+/// Moves a keyframe within W, and the points that it hosts:
 ///
-///   p -> s R p + t,   R_WC -> R R_WC,   rho -> rho / s,   var(rho) -> var(rho) / s²,   (a, b, h) -> (a, b, s h)
+///   p -> s R p + t,   R_WC -> R R_WC,   rho -> rho / s,   var(rho) -> var(rho) / s²
+void move_keyframe(const Similarity& T, int keyframe, KeyframeMap* map);
+/// Moves all of the window: keyframes, points, places, planes, and the body. Of planes (a, b, h) -> (a, b, s h).
 void move_window(const Similarity& T, KeyframeMap* map, KeyframePlanes* planes, KeyframeMotion* motion);
 
 }  // namespace pf

@@ -64,6 +64,12 @@ class KeyframeTable {
   /// Entry of the newest one, or -1.
   int newest() const { return newest_; }
   bool used(int k) const { return keyframe_[k].number > 0; }
+  /// Entry of the one with this number, or -1.
+  int entry_of(int number) const {
+    for (int k = 0; k < capacity_; ++k)
+      if (used(k) && keyframe_[k].number == number) return k;
+    return -1;
+  }
   Keyframe& operator[](int k) { return keyframe_[k]; }
   const Keyframe& operator[](int k) const { return keyframe_[k]; }
 

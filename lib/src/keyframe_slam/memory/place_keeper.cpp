@@ -103,8 +103,7 @@ void PlaceKeeper::update(const KeptPlace& now, KeptPlace* kept) const {
 }
 
 bool PlaceKeeper::bring_back(std::uint32_t id) {
-  for (const int k : used_entries(map_.keyframes))
-    if (map_.keyframes[k].number == static_cast<int>(id)) return true;
+  if (map_.keyframes.entry_of(static_cast<int>(id)) >= 0) return true;
   const int leaving = leaving_keyframe(map_, settings_.window_keyframes);
   if (leaving >= 0) {
     keep(leaving);
@@ -113,10 +112,26 @@ bool PlaceKeeper::bring_back(std::uint32_t id) {
   const int at = map_.places.entry_of(id);
   if (at < 0) return false;
   const KeptPlace& place = map_.places[at];
-  const int k = map_.keyframes.add_again(static_cast<int>(id), place.q_WK, place.p_WK, place.covariance);
+  map_.keyframes.add_again(static_cast<int>(id), place.q_WK, place.p_WK, place.covariance);
   map_.places.note_return(at);
-  for (int i = 0; i < place.count; ++i) bring_point(place, place.point[i], k);
+  bring_points(id);
   return true;
+}
+
+void PlaceKeeper::follow_keyframes() {
+  for (const int k : used_entries(map_.keyframes)) {
+    const int at = map_.places.entry_of(static_cast<std::uint32_t>(map_.keyframes[k].number));
+    if (at < 0) continue;
+    map_.places[at].q_WK = map_.keyframes[k].q_WC;
+    map_.places[at].p_WK = map_.keyframes[k].p_W;
+  }
+}
+
+void PlaceKeeper::bring_points(std::uint32_t id) {
+  const int at = map_.places.entry_of(id), k = map_.keyframes.entry_of(static_cast<int>(id));
+  if (at < 0 || k < 0) return;
+  const KeptPlace& place = map_.places[at];
+  for (int i = 0; i < place.count; ++i) bring_point(place, place.point[i], k);
 }
 
 void PlaceKeeper::bring_near(const CameraView& view, Scalar depth, int most) {

@@ -31,6 +31,11 @@ class PlaceKeeper {
   /// keyframe that would leave for it.
   bool bring_back(std::uint32_t id);
 
+  /// Places whose keyframes are in the window are where these are now.
+  void follow_keyframes();
+  /// The points of a place whose keyframe is in the window come back to it, as far as they have left it.
+  void bring_points(std::uint32_t id);
+
   /// Brings the places back that see much of what a view sees, the nearest first, as far as they are not in the window: at most so many.
   void bring_near(const CameraView& view, Scalar depth, int most);
 

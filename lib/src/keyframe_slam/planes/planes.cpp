@@ -79,16 +79,18 @@ void KeyframePlanes::clear_points(int k) {
 }
 
 void KeyframePlanes::move(const Similarity& T) {
+  for (const int k : used_entries(table_)) move(k, T);
+}
+
+void KeyframePlanes::move(int k, const Similarity& T) {
   const Scalar s = T.s;
-  for (const int k : used_entries(table_)) {
-    if (table_[k].known && !is_measured(k)) continue;  // it is where the plan has it, and not in the map
-    KeyframePlane& plane = plane_[k];
-    plane.frame = {T.q.toRotationMatrix() * plane.frame.R_WP, T.of(plane.frame.o_W)};
-    plane.covariance.row(2) *= s;
-    plane.covariance.col(2) *= s;
-    for (PlaneOutline* known : {&table_[k].seen, &table_[k].support})
-      for (int i = 0; i < known->count && !table_[k].known; ++i) known->uv[i] *= s;
-  }
+  if (table_[k].known && !is_measured(k)) return;  // it is where the plan has it, and not in the map
+  KeyframePlane& plane = plane_[k];
+  plane.frame = {T.q.toRotationMatrix() * plane.frame.R_WP, T.of(plane.frame.o_W)};
+  plane.covariance.row(2) *= s;
+  plane.covariance.col(2) *= s;
+  for (PlaneOutline* known : {&table_[k].seen, &table_[k].support})
+    for (int i = 0; i < known->count && !table_[k].known; ++i) known->uv[i] *= s;
 }
 
 ///   covariance of (a, b, h) = sum J_i (Sigma_i + roughness² n nᵀ) J_iᵀ,   J_i of fit_plane_jacobian

@@ -48,6 +48,7 @@ class KeyframePlanes {
   // --- where they are
   /// All of W is moved.
   void move(const Similarity& T);
+  void move(int k, const Similarity& T);
   /// Before what an adjustment says of planes.
   void begin_adjustment();
   /// Takes what an adjustment says of a plane: (a, b, h) about its frame, and their covariance. The plane gets a frame that it lies in.

@@ -125,6 +125,10 @@ void KeyframeRelocaliser::leave_map(std::uint32_t map_id) {
 
 void KeyframeRelocaliser::move(const Similarity& T) {
   views_.move(T);
+  move_asked(T);
+}
+
+void KeyframeRelocaliser::move_asked(const Similarity& T) {
   asked_.last.view = {(T.q * asked_.last.view.q_WC).normalized(), T.of(asked_.last.view.c_W)};
   asked_.last.depth *= T.s;
   asked_.judged.view = {(T.q * asked_.judged.view.q_WC).normalized(), T.of(asked_.judged.view.c_W)};

@@ -60,6 +60,12 @@ class KeyframeRelocaliser {
 
   /// All of W is moved.
   void move(const Similarity& T);
+  /// The window is moved by T, and kept views each by what is near: correction(q_WC, p_W).
+  template <typename F>
+  void move_each(const Similarity& T, F&& correction) {
+    views_.move_each(correction);
+    move_asked(T);
+  }
 
   int kept_views() const { return views_.count(); }
   PlaceKeeper& keeper() { return keeper_; }
@@ -92,6 +98,7 @@ class KeyframeRelocaliser {
   };
 
   void compare_view();
+  void move_asked(const Similarity& T);
   bool recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival);
   Tried try_pose(const PoseHypothesis& about, const PoseProposal& before, Scalar median_depth);
 
