@@ -97,8 +97,9 @@ Scalar log_share_elsewhere(const PoseConsensus& consensus, const FindShare& shar
   using namespace tuning::common_part;
   const int found = consensus.inliers, missed = consensus.searched - found;
   const Scalar any = log_any_share(consensus.searched, found);
-  const Scalar few = log_neighbours(consensus, share) + log_rising(1, found) + log_rising(kFew, missed) -
-                     log_rising(1 + kFew, consensus.searched);
+  const Scalar b = 1 / (kPart * share.mean()) - 1;
+  const Scalar few = log_neighbours(consensus, share) + log_rising(1, found) + log_rising(b, missed) -
+                     log_rising(1 + b, consensus.searched);
   return any + std::log(std::exp(alike.log_share()) + kShare * std::exp(few - any));
 }
 

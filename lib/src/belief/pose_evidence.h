@@ -53,6 +53,8 @@ class FindShare {
   /// ln of the probability that just `paired` of `inliers` have an inlier as nearest neighbour, where a part is found as usual and the rest
   /// is not: about the same mean m.
   Scalar log_paired(int inliers, int paired) const;
+  /// m
+  Scalar mean() const { return mean_; }
   /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
   Scalar in_frame(int searched, int inliers) const;
 
@@ -79,7 +81,7 @@ Scalar log_any_share(int searched, int inliers);
 /// right one, where they agree as well as there. A place that looks like it, one in s, gives any share of them; a part that looks like a
 /// part (a poster, a row of tags, the same wall from elsewhere) a few:
 ///
-///   ln(s B(k + 1, n - k + 1) + kShare r B(k + 1, n - k + kFew) / B(1, kFew))
+///   ln(s B(k + 1, n - k + 1) + kShare r B(k + 1, n - k + b) / B(1, b)),   1 / (1 + b) = kPart m
 ///
 /// r is of the inliers' neighbours: the right pose's misses lie among its finds, and the part is found whole. Where j of the k inliers have
 /// an inlier as nearest neighbour, with p = (k - 1) / (n - 1),

@@ -35,14 +35,14 @@ UpdateOutcome ImageFrontEnd::measure(MeasureMode mode) {
   hypotheses_.begin();
   outcome_ = UpdateOutcome();
   listed_ = list_candidates();
-  bool followed = mode.starts && !mode.is_vague && search_.find_followed(listed_);
-  if (!mode.is_vague) followed = measure_listed(mode, followed);
+  bool followed = mode.starts && !mode.is_vague && !settings_.inertial && search_.find_followed(listed_);
+  if (!mode.is_vague) followed = measure_listed(mode, followed, mode.starts);
   if (frame_.report.inliers == 0 && (followed || search_.find_followed(listed_))) {
     if (!mode.is_vague) {
       hypotheses_.add();
       listed_ = list_candidates();
     }
-    measure_listed(mode, !followed);
+    measure_listed(mode, !followed, false);
   }
   return outcome_;
 }
@@ -57,17 +57,18 @@ int ImageFrontEnd::list_candidates() {
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used. follows: searches go about the places where the picture as a whole has gone, unless a start finds few of those first
-/// ones there, since something may have moved before the camera. Returns whether they do.
-bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
+/// anything is used. follows: searches go about the places where the picture as a whole has gone; it tells the rotation better than a motion
+/// model does, and worse than a gyroscope. may_change: where few of those first ones are found, they go about the other. Returns whether
+/// they followed.
+bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows, bool may_change) {
   const SearchMode search = {follows, mode.parallax_lasts};
   const int count = listed_;
   const int scouts = search_.widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search_.search(0, scouts > 0 ? scouts : count, search);
   const int scouted = frame_.report.attempts;
-  if (follows && mode.starts && belief_.share().is_unlikely(scouted, found)) {
+  if (may_change && belief_.share().is_unlikely(scouted, found) && (follows || search_.find_followed(count))) {
     listed_ = list_candidates();
-    return measure_listed(mode, false);
+    return measure_listed(mode, !follows, false);
   }
   if (scouts > 0) {
     const bool used = update_with_consensus({0, found, scouted, false, follows}, mode);

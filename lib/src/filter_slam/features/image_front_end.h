@@ -68,7 +68,7 @@ class ImageFrontEnd {
 
  private:
   int list_candidates();
-  bool measure_listed(const MeasureMode& mode, bool follows);
+  bool measure_listed(const MeasureMode& mode, bool follows, bool may_change);
   /// A run of listed candidates that were searched for together; those that were found come first.
   struct Range {
     int first, found, searched;

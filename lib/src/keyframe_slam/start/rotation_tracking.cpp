@@ -30,15 +30,17 @@ int RotationTracking::search(bool follows) {
   return search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
 }
 
-/// Where the image as a whole has moved, which is known better than the motion. What moves before the camera may have taken it along: where
-/// few are found, about where the motion has them as well, and the better counts. Returns how many are found.
+/// About where the image as a whole has moved, which tells the rotation better than a motion model, or where the motion has them, if samples
+/// of a gyroscope are in it. Either may be wrong (something moves before the camera, samples are missing): where few are found, about the
+/// other as well, and the better counts. Returns how many are found.
 int RotationTracking::find_points(const FindShare& share) {
   search_.list_unplaced(prior_of(motion_), settings_.start_depth);
-  const bool follows = search_.find_followed();
+  const bool is_followed = search_.find_followed();
+  const bool follows = is_followed && !settings_.inertial;
   const int found = search(follows);
-  if (!follows || !share.is_unlikely(frame_.report.attempts, found)) return found;
-  const int by_motion = search(false);
-  return by_motion >= found ? by_motion : search(true);
+  if (!is_followed || !share.is_unlikely(frame_.report.attempts, found)) return found;
+  const int otherwise = search(!follows);
+  return otherwise >= found ? otherwise : search(follows);
 }
 
 /// Rays and pixels of what was found. Returns how many.
