@@ -57,9 +57,9 @@ int ImageFrontEnd::list_candidates() {
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used. follows: searches go about the places where the picture as a whole has gone; it tells the rotation better than a motion
-/// model does, and worse than a gyroscope. may_change: where few of those first ones are found, they go about the other. Returns whether
-/// they followed.
+/// anything is used. follows: searches go about the places where the image as a whole has gone, which tells the rotation better than a
+/// motion model does, and worse than a gyroscope. may_change: where few of those first ones are found, they go about the other. Returns
+/// whether they followed.
 bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows, bool may_change) {
   const SearchMode search = {follows, mode.parallax_lasts};
   const int count = listed_;

@@ -30,9 +30,9 @@ int RotationTracking::search(bool follows) {
   return search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
 }
 
-/// About where the image as a whole has moved, which tells the rotation better than a motion model, or where the motion has them, if samples
-/// of a gyroscope are in it. Either may be wrong (something moves before the camera, samples are missing): where few are found, about the
-/// other as well, and the better counts. Returns how many are found.
+/// About where the image as a whole has moved, which tells the rotation better than a motion model; with samples of a gyroscope about where
+/// the motion has them. Either may be wrong (something moves before the camera, samples are missing): where few are found, about the other
+/// as well, and the better counts. Returns how many are found.
 int RotationTracking::find_points(const FindShare& share) {
   search_.list_unplaced(prior_of(motion_), settings_.start_depth);
   const bool is_followed = search_.find_followed();
