@@ -30,16 +30,9 @@ int64_t clock_ns(void*) { return steady_ns(); }
 
 constexpr size_t kMaxLines = 400;
 
-/// With the frame that is being pushed. The first and the last lines of a long run; those between them are left out.
-void keep_line(void* user, const char* line) {
-  auto& log = *static_cast<Session::Log*>(user);
-  std::vector<std::string>& lines = log.lines;
-  if (lines.size() >= kMaxLines) {
-    lines.erase(lines.begin() + kMaxLines / 2);
-    lines[kMaxLines / 2 - 1] = "(lines are left out here)";
-  }
-  lines.emplace_back((log.frame < 0 ? "" : "frame " + std::to_string(log.frame) + ": ") + line);
-}
+constexpr size_t kLineBytes = 280;  ///< the library's line, with the frame
+
+void keep_line(void* user, const char* line) { static_cast<Session::Log*>(user)->add(line); }
 
 /// A calibration is a measurement too, and estimating what it left gains more where it is poor than it costs where it is good
 /// (lib/docs/theory/lens.md). A scene's is exact, and says so (pf_sim_camera).
@@ -66,6 +59,25 @@ std::string wrong_capacity(const std::string& field, const Options& options, con
 }
 
 }  // namespace
+
+Session::Log::Log() : unused(kMaxLines) {
+  lines.reserve(kMaxLines);
+  for (std::string& line : unused) line.reserve(kLineBytes);
+}
+
+/// With the frame that is being pushed. When full, a line in the middle is left out.
+void Session::Log::add(const char* line) {
+  if (unused.empty()) {
+    unused.push_back(std::move(lines[kMaxLines / 2]));
+    lines.erase(lines.begin() + kMaxLines / 2);
+    lines[kMaxLines / 2 - 1] = "(lines are left out here)";
+  }
+  std::string text = std::move(unused.back());
+  unused.pop_back();
+  text.clear();
+  if (frame >= 0) text.append("frame ").append(std::to_string(frame)).append(": ");
+  lines.push_back(std::move(text.append(line)));
+}
 
 Session::~Session() { std::free(block_); }
 

@@ -49,10 +49,14 @@ class Session {
   bool take_notice(const FrameView& view, std::string& line);
   const std::vector<std::string>& log() const { return log_.lines; }
 
-  /// Lines of the library's log.
+  /// Lines of the library's log: of a long run the first and the last ones.
   struct Log {
+    Log();
+    void add(const char* line);
+
     std::vector<std::string> lines;
-    int64_t frame = -1;  ///< that is being pushed, from 0; negative: none
+    std::vector<std::string> unused;  ///< with room for a line each, so that the log of a long run does not grow
+    int64_t frame = -1;               ///< that is being pushed, from 0; negative: none
   };
 
  private:

@@ -62,8 +62,7 @@ inline constexpr Scalar kGain = Scalar(0.1);          ///< of a frame, in mean a
 /// view (lib/docs/lab/2026-11/belief.md).
 namespace common_part {
 inline constexpr Scalar kShare = Scalar(0.5);  ///< of wrong places that have one
-inline constexpr Scalar kPart =
-    Scalar(0.05);  ///< of the features, in the mean; of it as much is found as of all in earlier frames
+inline constexpr Scalar kPart = Scalar(0.05);  ///< of the features, in the mean, which are found as usual
 }  // namespace common_part
 
 /// Chance that a feature which is in view is found.
