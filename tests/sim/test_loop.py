@@ -22,6 +22,6 @@ with tempfile.TemporaryDirectory() as folder:
 without, places = walk["without"], walk["with"]
 if without["lost"] + places["lost"] > 0 or without["returned"] > 0 or places["returned"] == 0:
     fail(f"lost, places where there are none, or no return: {walk}")
-# A third of a per cent of the way, so that there is something to correct, and two tenths of the corridor's width at most.
-if not 0.08 < without["end_m"] < 0.4 or not places["end_m"] < 0.2 * without["end_m"]:
+# Half a per cent of the way, so that there is something to correct, and two tenths of the corridor's width at most.
+if not 0.12 < without["end_m"] < 0.4 or not places["end_m"] < 0.2 * without["end_m"]:
     fail(f"the end: {without}, with places {places}")

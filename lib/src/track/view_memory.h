@@ -30,10 +30,7 @@ class ViewMemory {
   int count() const { return count_; }
   /// All of W is moved.
   void move(const Similarity& T) {
-    for (int i = 0; i < count_; ++i) {
-      view_[i].q_WC = (T.q * view_[i].q_WC).normalized();
-      view_[i].p_W = T.of(view_[i].p_W);
-    }
+    move_each([&](const Quat&, const Vec3&) { return T; });
   }
 
   /// Each view is moved by a similarity of its own: correction(q_WC, p_W).

@@ -21,26 +21,33 @@ bool RotationTracking::layout(Arena& arena) {
   return arena.ok();
 }
 
-/// Lists all points, and searches for them. Returns how many are found.
-int RotationTracking::search(bool follows) {
-  const Scalar depth = settings_.start_depth;
+/// Lists all points.
+int RotationTracking::list() { return search_.list_unplaced(prior_of(motion_), settings_.start_depth); }
+
+/// Searches for the points that have just been listed. Returns how many are found.
+int RotationTracking::search(int listed, bool follows) {
   PosePrior at = prior_of(motion_);
   at.follows = follows;
+  return search_.search(0, 0, listed, at, settings_.start_depth);
+}
+
+/// Once more, about the other place.
+int RotationTracking::search_again(bool follows) {
   frame_.forget_searches();
-  return search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
+  return search(list(), follows);
 }
 
 /// About where the image as a whole has moved, which tells the rotation better than a motion model; with samples of a gyroscope about where
 /// the motion has them. Either may be wrong (something moves before the camera, samples are missing): where few are found, about the other
 /// as well, and the better counts. Returns how many are found.
 int RotationTracking::find_points(const FindShare& share) {
-  search_.list_unplaced(prior_of(motion_), settings_.start_depth);
-  const bool is_followed = search_.find_followed();
-  const bool follows = is_followed && !settings_.inertial;
-  const int found = search(follows);
-  if (!is_followed || !share.is_unlikely(frame_.report.attempts, found)) return found;
-  const int otherwise = search(!follows);
-  return otherwise >= found ? otherwise : search(follows);
+  const int listed = list();
+  const bool follows = !settings_.inertial && search_.find_followed();
+  const int found = search(listed, follows);
+  if (!share.is_unlikely(frame_.report.attempts, found)) return found;
+  if (!follows && !(settings_.inertial && search_.find_followed())) return found;
+  const int otherwise = search_again(!follows);
+  return otherwise >= found ? otherwise : search_again(follows);
 }
 
 /// Rays and pixels of what was found. Returns how many.

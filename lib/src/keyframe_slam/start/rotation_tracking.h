@@ -21,7 +21,9 @@ class RotationTracking {
   bool measure(const Vec3& base_W, const FindShare& share);
 
  private:
-  int search(bool follows);
+  int list();
+  int search(int listed, bool follows);
+  int search_again(bool follows);
   int find_points(const FindShare& share);
   int list_rays();
   void correct_body(int found, const Quat& q_WC, const Vec3& p_W);
